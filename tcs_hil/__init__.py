@@ -1,0 +1,1 @@
+"""Traction control on a CAN bus, and the bench that tests it."""

@@ -1,0 +1,1 @@
+"""Slip controllers, one instance per driven wheel."""

@@ -1,0 +1,57 @@
+"""What every control law looks like to the pipeline: one instance per driven wheel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Protocol
+
+
+@dataclass(frozen=True, slots=True)
+class WheelState:
+    """One driven wheel as the estimator sees it at this tick.
+
+    ``slip_speed_mps`` is s = omega R - v, ``slip_ratio`` the modified kappa of
+    Eq. (slip_mod).  Motor quantities are on the motor side of the gear.
+    """
+
+    slip_speed_mps: float
+    wheel_speed_radps: float
+    slip_ratio: float
+    vehicle_speed_mps: float
+    motor_speed_radps: float
+    motor_torque_nm: float
+
+
+class SolveStatus(IntEnum):
+    """How a proposal came about; recorded with every tick."""
+
+    OK = 0
+    MAX_ITERATIONS = 1
+    FAILED = 2
+    BAD_INPUT = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """A controller's wish for the coming period, within [0, torque_ref_nm].
+
+    After ``FAILED`` or ``BAD_INPUT`` the torque is the driver's request: a law
+    that cannot decide does not modify it.
+    """
+
+    torque_nm: float
+    status: SolveStatus = SolveStatus.OK
+    iterations: int = 0
+
+
+class Controller(Protocol):
+    """One wheel's slip controller.  A failed solve is a status, never an exception."""
+
+    def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
+        """Propose the motor torque for the coming period."""
+        ...
+
+    def reset(self) -> None:
+        """Forget integrators and warm starts, as at start-up."""
+        ...

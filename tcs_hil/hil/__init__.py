@@ -1,0 +1,1 @@
+"""The bench: starts both processes, records, judges and reports."""

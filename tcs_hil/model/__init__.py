@@ -1,0 +1,1 @@
+"""The belief: wheel dynamics, tyre, and the Koopman predictor identified from them."""

@@ -1,0 +1,1 @@
+"""Clock, loop, recorder: everything that touches the operating system."""

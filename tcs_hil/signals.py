@@ -1,0 +1,78 @@
+"""What crosses the seam between the bus and the control code, in SI units.
+
+Wheels come in the order fl, fr, rl, rr; driven wheels and motors in the order
+left, right.  Torque and speed of a motor are on the motor side of the gear.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple
+
+Pair = tuple[float, float]
+FourWheels = tuple[float, float, float, float]
+
+NO_LIMIT = math.inf
+"""A torque ceiling that binds nothing: the driver's request passes untouched."""
+
+
+class TcsState(IntEnum):
+    """State of the service, numbered as in the DBC's value table."""
+
+    OFF = 0
+    INIT = 1
+    STANDBY = 2
+    ACTIVE = 3
+    DEGRADED = 4
+    FAULT = 5
+
+
+class ControllerKind(IntEnum):
+    """Control law in charge, numbered as in the DBC's value table."""
+
+    OFF = 0
+    PI = 1
+    KMPC = 2
+    NMPC = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """Newest value of every input, with the age of each source at the tick.
+
+    An age is ``math.inf`` until the first good frame.  ``accel_x_mps2`` is NaN
+    where the vehicle has no accelerometer on the bus.
+    """
+
+    wheel_speed_radps: FourWheels
+    wheel_speed_valid: tuple[bool, bool, bool, bool]
+    motor_speed_radps: Pair
+    motor_torque_nm: Pair
+    driver_torque_nm: Pair
+    accel_x_mps2: float
+    front_speed_age_s: float
+    rear_speed_age_s: float
+    motor_age_s: float
+    driver_age_s: float
+
+
+class TorqueLimits(NamedTuple):
+    """Ceilings on the two front motors; ``NO_LIMIT`` where nothing is held."""
+
+    left_nm: float = NO_LIMIT
+    right_nm: float = NO_LIMIT
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """Everything one tick tells the vehicle."""
+
+    limits: TorqueLimits
+    active: tuple[bool, bool]
+    state: TcsState
+    fault_code: int
+    controller: ControllerKind
+    slip_ratio: Pair
+    slip_reference: float

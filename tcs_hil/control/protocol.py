@@ -22,6 +22,11 @@ class WheelState:
     motor_speed_radps: float
     motor_torque_nm: float
 
+    @classmethod
+    def at_rest(cls) -> WheelState:
+        """A standing wheel, before anything is known."""
+        return cls(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
 
 class SolveStatus(IntEnum):
     """How a proposal came about; recorded with every tick."""

@@ -1,0 +1,75 @@
+"""Vehicle speed from the rolling rear wheels, slip of each driven front wheel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tcs_hil.control.protocol import WheelState
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.model.wheel import slip_ratio
+from tcs_hil.signals import FourWheels, Measurement
+
+FRONT = (0, 1)
+REAR = (2, 3)
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """State of the car at one tick: body speed and both driven wheels (left, right)."""
+
+    vehicle_speed_mps: float
+    wheels: tuple[WheelState, WheelState]
+
+
+class Estimator:
+    """Infers what no sensor on the bus says.
+
+    A wheel whose validity flag is down keeps its last good speed here; whether
+    that may still be acted on is for the supervisor to decide.
+    """
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        self._vehicle = vehicle
+        self._wheel_speed_radps: FourWheels = (0.0, 0.0, 0.0, 0.0)
+        self.newest = Estimate(0.0, (WheelState.at_rest(), WheelState.at_rest()))
+
+    def update(self, measurement: Measurement) -> Estimate:
+        """Estimate speed and slip from the newest measurement."""
+        fl, fr, rl, rr = (
+            speed if valid else last
+            for speed, valid, last in zip(
+                measurement.wheel_speed_radps,
+                measurement.wheel_speed_valid,
+                self._wheel_speed_radps,
+                strict=True,
+            )
+        )
+        self._wheel_speed_radps = (fl, fr, rl, rr)
+        speed_mps = self._body_speed_mps(measurement)
+        self.newest = Estimate(
+            speed_mps,
+            (
+                self._wheel(fl, speed_mps, measurement, 0),
+                self._wheel(fr, speed_mps, measurement, 1),
+            ),
+        )
+        return self.newest
+
+    def _body_speed_mps(self, measurement: Measurement) -> float:
+        """Mean of the rear wheels that vouch for themselves; both held when neither does."""
+        trusted = [i for i in REAR if measurement.wheel_speed_valid[i]] or list(REAR)
+        mean_radps = sum(self._wheel_speed_radps[i] for i in trusted) / len(trusted)
+        return mean_radps * self._vehicle.wheel_radius_m
+
+    def _wheel(
+        self, speed_radps: float, body_mps: float, measurement: Measurement, side: int
+    ) -> WheelState:
+        slip_speed_mps = speed_radps * self._vehicle.wheel_radius_m - body_mps
+        return WheelState(
+            slip_speed_mps=slip_speed_mps,
+            wheel_speed_radps=speed_radps,
+            slip_ratio=float(slip_ratio(slip_speed_mps, speed_radps, self._vehicle)),
+            vehicle_speed_mps=body_mps,
+            motor_speed_radps=measurement.motor_speed_radps[side],
+            motor_torque_nm=measurement.motor_torque_nm[side],
+        )

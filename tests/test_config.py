@@ -1,0 +1,42 @@
+from pathlib import Path
+
+import pytest
+
+from tcs_hil.config import read_toml
+from tcs_hil.errors import ConfigError
+from tcs_hil.gate import GateSettings
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "gate.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_good_file_becomes_a_frozen_struct(tmp_path: Path) -> None:
+    settings = read_toml(write(tmp_path, "release_rate_nmps = 300.0"), GateSettings)
+    assert settings == GateSettings(release_rate_nmps=300.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "culprit"),
+    [
+        ("release_rate = 1.0", "release_rate"),
+        ("release_rate_nmps = -1.0", "release_rate_nmps"),
+        ("release_rate_nmps = 'fast'", "release_rate_nmps"),
+        ("release_rate_nmps = ", "not valid TOML"),
+    ],
+)
+def test_a_bad_file_is_refused_with_file_and_key_named(
+    tmp_path: Path, text: str, culprit: str
+) -> None:
+    path = write(tmp_path, text)
+    with pytest.raises(ConfigError, match=culprit) as refused:
+        read_toml(path, GateSettings)
+    assert str(path) in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_missing_file_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"nowhere\.toml: cannot be read"):
+        read_toml(tmp_path / "nowhere.toml", GateSettings)

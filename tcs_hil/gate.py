@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import math
+from enum import Enum
 from typing import Annotated
 
 import msgspec
 
 from tcs_hil.signals import NO_LIMIT
-from tcs_hil.supervisor import Permission
+
+
+class Permission(Enum):
+    """What the supervisor lets a gate do with the controllers' proposals."""
+
+    FOLLOW = "follow"
+    HOLD = "hold"
+    RELEASE = "release"
 
 
 class GateSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tcs_hil.control.protocol import Controller, Proposal, SolveStatus
 from tcs_hil.estimator import Estimate, Estimator
-from tcs_hil.gate import Gate
+from tcs_hil.gate import Gate, Permission
 from tcs_hil.signals import (
     NO_LIMIT,
     Command,
@@ -16,7 +16,7 @@ from tcs_hil.signals import (
     Pair,
     TorqueLimits,
 )
-from tcs_hil.supervisor import Permission, Supervisor, Verdict
+from tcs_hil.supervisor import Supervisor, Verdict
 
 UNSOLVED = (SolveStatus.FAILED, SolveStatus.BAD_INPUT)
 NO_PROPOSAL = Proposal(math.nan)

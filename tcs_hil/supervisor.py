@@ -10,11 +10,12 @@ last value serves, beyond that nothing may be raised (DEGRADED), beyond
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import Enum, IntEnum
+from enum import IntEnum
 from typing import Annotated
 
 import msgspec
 
+from tcs_hil.gate import Permission
 from tcs_hil.signals import Measurement, TcsState
 
 PERIOD_S = 0.002
@@ -33,14 +34,6 @@ class FaultCode(IntEnum):
     FRONT_SPEED_INVALID = 6
     CONTROLLER_FAILED = 7
     INTERNAL_ERROR = 8
-
-
-class Permission(Enum):
-    """What the gate may do with the controllers' proposals."""
-
-    FOLLOW = "follow"
-    HOLD = "hold"
-    RELEASE = "release"
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tcs_hil.gate import Gate, GateSettings
+from tcs_hil.gate import Gate, GateSettings, Permission
 from tcs_hil.signals import NO_LIMIT
-from tcs_hil.supervisor import Permission
 
 ANY_FLOAT = st.floats(allow_nan=True, allow_infinity=True, allow_subnormal=True)
 

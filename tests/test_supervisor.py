@@ -1,8 +1,9 @@
 import pytest
 from factories import measurement
 
+from tcs_hil.gate import Permission
 from tcs_hil.signals import TcsState
-from tcs_hil.supervisor import FaultCode, Permission, Supervisor, SupervisorSettings
+from tcs_hil.supervisor import FaultCode, Supervisor, SupervisorSettings
 
 GOOD = measurement()
 LATE = measurement(rear_speed_age_s=0.007)

@@ -1,0 +1,52 @@
+"""argv to configuration to wiring.  Each command imports what it needs when it is called."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+import click
+
+from tcs_hil import console
+
+COMMANDS = {
+    "run": "Run the traction control service on a bus.",
+    "identify": "Identify a Koopman predictor and write it as a model file.",
+    "demo": "Run the paper's experiment between two processes and show it.",
+    "record": "Record a bus into a BLF, ASC or candump log file.",
+    "report": "Show latency, jitter and states of a flight recording.",
+}
+
+
+class LazyGroup(click.Group):
+    """A group whose commands live in modules of their own: ``run --help`` needs no CasADi."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
+        """Names in the order a newcomer needs them."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002 - click's signature
+        """Import the one module that was asked for."""
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = importlib.import_module(f"{__name__}.{cmd_name}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002 - click's signature
+        """List the commands without importing any."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="tcs-hil")
+def cli() -> None:
+    """Traction control on a CAN bus: Koopman and nonlinear MPC every 2 ms.
+
+    Begin with `tcs-hil demo`.
+    """
+
+
+def main() -> None:
+    """Entry point of ``tcs-hil``."""
+    sys.exit(console.run(cli, "tcs-hil"))

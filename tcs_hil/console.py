@@ -1,0 +1,32 @@
+"""How both programs meet the user: errors in one sentence, exit status 2."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from tcs_hil.errors import TcsError
+
+USER_ERROR = 2
+INTERRUPTED = 130
+
+
+def run(command: click.Command, program: str) -> int:
+    """Run a click command line and return its exit status.
+
+    What the user can mend ends as one sentence on stderr with status 2, never
+    as a traceback; anything else is our bug and is shown in full.
+    """
+    try:
+        status = command.main(prog_name=program, standalone_mode=False)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message(), err=True)
+        return USER_ERROR
+    except (TcsError, click.ClickException) as error:
+        sentence = error.format_message() if isinstance(error, click.ClickException) else str(error)
+        print(f"{program}: error: {sentence}", file=sys.stderr)
+        return USER_ERROR
+    except (click.Abort, KeyboardInterrupt):
+        return INTERRUPTED
+    return status if isinstance(status, int) else 0

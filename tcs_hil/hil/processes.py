@@ -1,0 +1,104 @@
+"""Starting and stopping the programs of a run; readiness through sd_notify, as under systemd."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from collections.abc import Iterator
+
+from tcs_hil.errors import TcsError
+
+READY_TIMEOUT_S = 60.0
+STOP_TIMEOUT_S = 10.0
+
+
+class ProcessError(TcsError):
+    """A program of the bench ended early or would not start."""
+
+
+class Program:
+    """A running child; its output goes to ``log``, which an error quotes the end of."""
+
+    def __init__(self, arguments: Sequence[str], log: Path, environment: dict[str, str]) -> None:
+        self._name = arguments[0]
+        self._log = log
+        with log.open("wb") as output:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", *arguments],
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                env=os.environ | environment,
+            )
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait for an end of its own accord.
+
+        Raises:
+            ProcessError: it failed, or still runs after ``timeout_s``.
+        """
+        try:
+            status = self._process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            raise ProcessError(f"{self._name} still runs after {timeout_s:g} s") from None
+        if status != 0:
+            raise self.failure(f"ended with status {status}")
+
+    def stop(self) -> None:
+        """Ask it to stop and wait until it has; a program that will not is killed."""
+        if self._process.poll() is not None:
+            return
+        self._process.send_signal(signal.SIGTERM)
+        try:
+            self._process.wait(STOP_TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    @property
+    def running(self) -> bool:
+        """Whether it has not ended yet."""
+        return self._process.poll() is None
+
+    def failure(self, what: str) -> ProcessError:
+        """An error that quotes the last line the program printed."""
+        lines = self._log.read_text(errors="replace").strip().splitlines()
+        return ProcessError(f"{self._name} {what}: {lines[-1] if lines else 'it printed nothing'}")
+
+
+@contextmanager
+def program(*arguments: str, log: Path) -> Iterator[Program]:
+    """Start ``python -m arguments...``, wait until it reports READY=1, stop it at the end.
+
+    Raises:
+        ProcessError: it ended or kept silent before it was ready.
+    """
+    with tempfile.TemporaryDirectory(prefix="tcs-hil.") as folder:
+        address = str(Path(folder) / "notify")
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listener:
+            listener.bind(address)
+            child = Program(arguments, log, {"NOTIFY_SOCKET": address})
+            try:
+                _await_ready(child, listener)
+                yield child
+            finally:
+                child.stop()
+
+
+def _await_ready(child: Program, listener: socket.socket) -> None:
+    listener.settimeout(0.1)
+    for _ in range(int(READY_TIMEOUT_S / 0.1)):
+        try:
+            if b"READY=1" in listener.recv(4096).split(b"\n"):
+                return
+        except TimeoutError:
+            if not child.running:
+                raise child.failure("ended before it was ready") from None
+    raise child.failure(f"was not ready within {READY_TIMEOUT_S:g} s")

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.model.vehicle import Positive, Vehicle
-from tcs_hil.model.wheel import MIN_SUBSTEPS, rk4_step
+from tcs_hil.model.wheel import rk4_step
 
 FloatArray = NDArray[np.float64]
 Range = tuple[float, float]
@@ -24,7 +24,6 @@ class DatasetSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     trajectories: Annotated[int, msgspec.Meta(ge=1)] = 1000
     samples: Annotated[int, msgspec.Meta(ge=1)] = 250
     period_s: Positive = 0.002
-    substeps: Annotated[int, msgspec.Meta(ge=1)] = MIN_SUBSTEPS
     initial_speed_mps: Range = (0.0, 40.0 / 3.6)
     initial_slip_ratio: Range = (0.0, 0.2)
     torque_nm: Range = (50.0, 175.0)
@@ -61,9 +60,7 @@ def generate(
     states = np.empty((settings.samples + 1, settings.trajectories, 2))
     states[0] = _initial_states(vehicle, settings, rng)
     for k in range(settings.samples):
-        states[k + 1] = rk4_step(
-            states[k], torque[k], vehicle, settings.period_s, settings.substeps
-        )
+        states[k + 1] = rk4_step(states[k], torque[k], vehicle, settings.period_s)
         if progress is not None:
             progress((k + 1) / settings.samples)
     x, x_next = (part.swapaxes(0, 1).reshape(-1, 2) for part in (states[:-1], states[1:]))

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, Protocol
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.errors import ModelError
-from tcs_hil.model.vehicle import Positive
+from tcs_hil.model.vehicle import Positive, Vehicle
+from tcs_hil.model.wheel import slip_ratio
 
 FloatArray = NDArray[np.float64]
 
 SLIP_SPEED, WHEEL_SPEED, SLIP_RATIO = 0, 1, 2
 """Where every dictionary puts scaled s, scaled omega and kappa in the lifted state."""
+
+
+MAX_ORDER = 8
+"""Of the monomials; beyond it the regression is numerically meaningless."""
 
 
 class Scaling(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -54,9 +60,14 @@ class Scaling(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 def fit_scaling(x: FloatArray, u: FloatArray, x_next: FloatArray) -> Scaling:
-    """Scaling of a data set: x, x_next (n, 2) taken together, torque u (n, 1)."""
+    """Scaling of a data set: x, x_next (n, 2) taken together, torque u (n, 1).
+
+    Raises ModelError for a quantity that never changes.
+    """
     states = np.concatenate((x, x_next))
     (s_mean, omega_mean), (s_std, omega_std) = states.mean(axis=0), states.std(axis=0)
+    if min(s_std, omega_std, u.std()) == 0.0:
+        raise ModelError("slip speed, wheel speed or torque never changes in the data set")
     return Scaling(
         s_mean_mps=float(s_mean),
         s_std_mps=float(s_std),
@@ -90,7 +101,8 @@ class Dictionary(Protocol):
         ...
 
 
-class Monomials(msgspec.Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class Monomials:
     """Monomials of scaled s and omega up to ``order``, and kappa: Eqs. (basis_poly), (lift).
 
     z = [s, omega, kappa, s², s omega, omega², s³, ..., omega^order, 1].  First-order
@@ -98,7 +110,11 @@ class Monomials(msgspec.Struct, frozen=True):
     the predictor is affine in physical units and much worse without it.
     """
 
-    order: Annotated[int, msgspec.Meta(ge=1, le=8)] = 4
+    order: int = 4
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.order <= MAX_ORDER:
+            raise ModelError(f"order of the monomials must be 1 to {MAX_ORDER}, not {self.order}")
 
     @property
     def name(self) -> str:
@@ -131,6 +147,17 @@ def make_dictionary(name: str, order: int) -> Dictionary:
     return DICTIONARIES[name](order)
 
 
-def lift(dictionary: Dictionary, s: Any, omega: Any, kappa: Any) -> FloatArray:
-    """Lifted state (nz,) of scaled floats, or (n, nz) of columns (n,)."""
-    return np.array(dictionary.observables(s, omega, kappa)).T
+@dataclass(frozen=True, slots=True)
+class Lifting:
+    """The map from one wheel's state in physical units to the lifted state."""
+
+    dictionary: Dictionary
+    scaling: Scaling
+    vehicle: Vehicle
+
+    def lift(self, s_mps: Any, omega_radps: Any) -> FloatArray:
+        """Lifted state (nz,) of one state given as floats, or (n, nz) of columns (n,)."""
+        s = self.scaling.scale_s(s_mps)
+        omega = self.scaling.scale_omega(omega_radps)
+        kappa = slip_ratio(s_mps, omega_radps, self.vehicle)
+        return np.array(self.dictionary.observables(s, omega, kappa)).T

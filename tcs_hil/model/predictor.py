@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,23 +13,14 @@ from numpy.typing import NDArray
 
 from tcs_hil.errors import ModelError
 from tcs_hil.model import archive
-from tcs_hil.model.dataset import DatasetSettings
-from tcs_hil.model.lifting import (
-    SLIP_RATIO,
-    SLIP_SPEED,
-    WHEEL_SPEED,
-    Dictionary,
-    Scaling,
-    lift,
-    make_dictionary,
-)
+from tcs_hil.model.dataset import DatasetSettings, Range
+from tcs_hil.model.lifting import SLIP_RATIO, Lifting, Scaling, make_dictionary
 from tcs_hil.model.vehicle import Positive, Vehicle
-from tcs_hil.model.wheel import slip_ratio
 
 FloatArray = NDArray[np.float64]
-Range = tuple[float, float]
 
 LAYOUT_VERSION = 1
+"""Of the model file; another number is refused, never guessed at."""
 
 
 class Validity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -40,25 +32,24 @@ class Validity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 class FitQuality(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How well the regression went, on the data it saw.
+    """How the regression went, on the data it saw.
 
-    ``residual_rms`` is the one-step error of each lifted state, in its own
-    scaled unit; ``gram_condition`` is the condition number of the normal
-    equations that the solver avoids, i.e. the square of the regressor's.
+    ``residual_rms`` is the one-step error of each observable, in the unit it has
+    in z; ``condition_number`` is that of [z, u] with columns of unit length.
     """
 
     samples: int
     residual_rms: tuple[float, ...]
-    gram_condition: float
+    condition_number: float
 
 
-class Identity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a predictor is made of and what it was made from; a model file's metadata."""
+class Provenance(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Everything a predictor is, apart from its matrices: the model file's metadata."""
 
     layout_version: int = LAYOUT_VERSION
+    period_s: Positive
     dictionary: str
     order: int
-    period_s: Positive
     scaling: Scaling
     validity: Validity
     fit: FitQuality
@@ -69,30 +60,120 @@ class Identity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 @dataclass(frozen=True, eq=False)
 class KoopmanPredictor:
-    """Linear prediction of the lifted state over one period.
+    """Linear prediction of the lifted state over one period, Eq. (koop_lti).
 
-    z is scaled as ``identity.scaling`` says and begins with [s, omega, kappa];
-    u is the scaled motor torque.  ``c`` selects these three from z.
+    z begins with [scaled s, scaled omega, kappa]; u is the scaled motor torque.
     """
 
     a: FloatArray  # (nz, nz)
     b: FloatArray  # (nz, 1)
-    c: FloatArray  # (3, nz)
-    dictionary: Dictionary
-    identity: Identity
+    provenance: Provenance
+    lifting: Lifting
 
-    slip_index = SLIP_RATIO
+    @classmethod
+    def build(cls, a: FloatArray, b: FloatArray, provenance: Provenance) -> KoopmanPredictor:
+        """Check the shapes against the dictionary.  Raises ModelError."""
+        dictionary = make_dictionary(provenance.dictionary, provenance.order)
+        nz = dictionary.size
+        if a.shape != (nz, nz) or b.shape != (nz, 1):
+            raise ModelError(f"A {a.shape} and B {b.shape} do not fit {nz} observables")
+        if not (np.isfinite(a).all() and np.isfinite(b).all()):
+            raise ModelError("A or B is not finite")
+        return cls(a, b, provenance, Lifting(dictionary, provenance.scaling, provenance.vehicle))
 
     @property
     def nz(self) -> int:
         """Length of the lifted state."""
-        return self.dictionary.size
+        return self.lifting.dictionary.size
+
+    @property
+    def c(self) -> FloatArray:
+        """Selection (3, nz) of [scaled s, scaled omega, kappa] from z, set by hand."""
+        return np.eye(3, self.nz)
+
+    @property
+    def slip_index(self) -> int:
+        """Where kappa stands in z."""
+        return SLIP_RATIO
 
     @property
     def period_s(self) -> float:
-        """Sampling time of the prediction in seconds."""
-        return self.identity.period_s
+        """Sampling time in seconds."""
+        return self.provenance.period_s
+
+    @property
+    def scaling(self) -> Scaling:
+        """Scaling of s, omega and the torque."""
+        return self.provenance.scaling
+
+    @property
+    def validity(self) -> Validity:
+        """Range of the data behind the predictor."""
+        return self.provenance.validity
 
     def lift(self, s_mps: Any, omega_radps: Any) -> FloatArray:
-        """Lifted state (nz,) of one wheel given as floats, or (n, nz) of columns (n,)."""
-        return lift_state(self.dictionary, self.identity.scaling, self.identity.vehicle, s_mps, omega_radps)
+        """Lifted state (nz,) of one state given as floats, or (n, nz) of columns (n,)."""
+        return self.lifting.lift(s_mps, omega_radps)
+
+    def scale_input(self, torque_nm: Any) -> Any:
+        """Motor torque in the unit in which B takes it."""
+        return self.scaling.scale_torque(torque_nm)
+
+    def predict(self, x0: FloatArray, torques_nm: FloatArray) -> FloatArray:
+        """Trajectory (..., n + 1, 3) of s in m/s, omega in rad/s and kappa.
+
+        It starts at ``x0`` (..., 2), [s, omega]; the ``torques_nm`` (..., n) are
+        held one period each.
+        """
+        z = self.lift(x0[..., 0], x0[..., 1])
+        trajectory = [z]
+        for u in np.moveaxis(self.scale_input(torques_nm), -1, 0):
+            z = z @ self.a.T + u[..., np.newaxis] * self.b[:, 0]
+            trajectory.append(z)
+        s, omega, kappa = np.moveaxis(np.stack(trajectory, axis=-2)[..., :3], -1, 0)
+        return np.stack((self.scaling.unscale_s(s), self.scaling.unscale_omega(omega), kappa), -1)
+
+    def save(self, path: Path) -> None:
+        """Write the model file; the same predictor gives the same bytes.  Raises ModelError."""
+        metadata = msgspec.json.format(msgspec.json.encode(self.provenance))
+        archive.write(path, metadata, {"a": self.a, "b": self.b})
+
+    @classmethod
+    def load(cls, path: Path, period_s: float) -> KoopmanPredictor:
+        """Read a model file made for this sampling time.  Raises ModelError naming the file."""
+        metadata, arrays = archive.read(path)
+        provenance = _decode(path, metadata)
+        if not math.isclose(provenance.period_s, period_s):
+            raise ModelError(
+                f"model file '{path}' is for a period of {provenance.period_s} s, not {period_s} s"
+            )
+        if arrays.keys() != {"a", "b"}:
+            raise ModelError(f"model file '{path}' holds {sorted(arrays)} instead of a and b")
+        try:
+            return cls.build(arrays["a"], arrays["b"], provenance)
+        except ModelError as error:
+            raise ModelError(f"model file '{path}' is inconsistent: {error}") from error
+
+
+def default_model_path() -> Path:
+    """The paper's predictor, identified with the default seed and shipped in the package."""
+    return Path(__file__).with_name("paper.npz")
+
+
+def _decode(path: Path, metadata: bytes) -> Provenance:
+    """Metadata of a known layout; the version is looked at before anything else."""
+    try:
+        version = msgspec.json.decode(metadata, type=_Version).layout_version
+        if version == LAYOUT_VERSION:
+            return msgspec.json.decode(metadata, type=Provenance)
+    except msgspec.DecodeError as error:
+        raise ModelError(f"model file '{path}' has bad metadata: {error}") from error
+    raise ModelError(
+        f"model file '{path}' has layout {version}, this version reads {LAYOUT_VERSION}"
+    )
+
+
+class _Version(msgspec.Struct):
+    """The part of the metadata that every layout shares."""
+
+    layout_version: int

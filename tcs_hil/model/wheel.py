@@ -18,7 +18,7 @@ from tcs_hil.model.vehicle import Vehicle
 
 FloatArray = NDArray[np.float64]
 
-MIN_SUBSTEPS = 4
+DEFAULT_SUBSTEPS = 4
 """Runge-Kutta steps per 2 ms that keep mu = 0.3 stable down to standstill.
 
 The modified slip bounds the fastest pole at 4000 1/s (at omega R = 0.32 m/s);
@@ -67,7 +67,9 @@ def slip_dynamics(
     return radius_m * omega_rate - 4.0 / vehicle.mass_kg * force_n, omega_rate
 
 
-def rk4(rate: Callable[[Any], Any], x: Any, period_s: float, substeps: int = MIN_SUBSTEPS) -> Any:
+def rk4(
+    rate: Callable[[Any], Any], x: Any, period_s: float, substeps: int = DEFAULT_SUBSTEPS
+) -> Any:
     """Advance x' = rate(x) over one period by classic Runge-Kutta; any x that adds and scales."""
     step_s = period_s / substeps
     for _ in range(substeps):
@@ -84,7 +86,7 @@ def rk4_step(
     torque_nm: FloatArray | float,
     vehicle: Vehicle,
     period_s: float,
-    substeps: int = MIN_SUBSTEPS,
+    substeps: int = DEFAULT_SUBSTEPS,
 ) -> FloatArray:
     """State [s, omega] (2,) or (n, 2) one period later, the torque () or (n,) being held."""
 

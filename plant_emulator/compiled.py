@@ -1,0 +1,47 @@
+"""The one seam to the compiler: numba turns the plant's pure functions into machine code.
+
+Compiled functions read parameters as NumPy records.  A record has the fields
+of the ``msgspec`` struct it was made from, so the functions are annotated with
+the struct, and run on the struct itself when called through ``.py_func``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import msgspec
+import numba
+import numpy as np
+
+F = TypeVar("F", bound=Callable[..., object])
+S = TypeVar("S", bound=msgspec.Struct)
+
+
+def compiled(function: F) -> F:
+    """Compile ``function`` on first call; the machine code is cached on disk.
+
+    Floating point stays IEEE (no fast-math): lockstep runs give the same bytes.
+    Division by zero gives inf or NaN, as in NumPy.
+    """
+    return cast(F, numba.njit(cache=True, error_model="numpy")(function))
+
+
+def record(parameters: S) -> S:
+    """Return ``parameters`` (nested structs of numbers) as the record compiled code takes."""
+    array = np.array([_values(parameters)], _layout(parameters))
+    return cast(S, array[0])
+
+
+def _layout(parameters: msgspec.Struct) -> np.dtype[Any]:
+    fields = [(name, getattr(parameters, name)) for name in parameters.__struct_fields__]
+    return np.dtype(
+        [(n, _layout(v) if isinstance(v, msgspec.Struct) else np.dtype(type(v))) for n, v in fields]
+    )
+
+
+def _values(parameters: msgspec.Struct) -> tuple[object, ...]:
+    return tuple(
+        _values(v) if isinstance(v, msgspec.Struct) else v
+        for v in msgspec.structs.astuple(parameters)
+    )

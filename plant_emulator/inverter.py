@@ -1,0 +1,63 @@
+"""The motor side of the torque limit: obey it, hold it when it stops coming, then let go gently."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from plant_emulator.compiled import compiled
+from plant_emulator.driver import Line
+from tcs_hil.signals import NO_LIMIT, TorqueLimits
+
+HOLD_S = 0.010
+RELEASE_NMPS = 500.0
+
+
+class Demand(NamedTuple):
+    """What both motors are asked for over one piece of time, as straight lines from its start."""
+
+    request_nm: float
+    request_nmps: float
+    limit_left_nm: float
+    limit_right_nm: float
+    limit_nmps: float
+
+
+@compiled
+def demanded(demand: Demand, elapsed_s: float) -> tuple[float, float]:
+    """Torque asked of the left and the right motor: the lower of request and limit."""
+    request_nm = demand.request_nm + demand.request_nmps * elapsed_s
+    released_nm = demand.limit_nmps * elapsed_s
+    return (
+        min(request_nm, demand.limit_left_nm + released_nm),
+        min(request_nm, demand.limit_right_nm + released_nm),
+    )
+
+
+class LimitKeeper:
+    """Remembers the limits last received.
+
+    They hold for 10 ms.  Without new ones they then rise by 500 Nm/s until the
+    driver's request is the lower one: a lost controller never means lost drive,
+    and never a step.
+    """
+
+    def __init__(self) -> None:
+        self._limits = TorqueLimits()
+        self._expiry_s = math.inf
+
+    def accept(self, limits: TorqueLimits, time_s: float) -> None:
+        """Take over limits that arrived at ``time_s``."""
+        self._limits = limits
+        self._expiry_s = math.inf if limits == (NO_LIMIT, NO_LIMIT) else time_s + HOLD_S
+
+    def next_change(self, time_s: float) -> float:
+        """When the hold ends, if that is still to come."""
+        return self._expiry_s if self._expiry_s > time_s else math.inf
+
+    def demand(self, request: Line, time_s: float) -> Demand:
+        """Request and limits from ``time_s`` until `next_change`."""
+        late_s = max(time_s - self._expiry_s, 0.0)
+        slope = RELEASE_NMPS if time_s >= self._expiry_s else 0.0
+        left_nm, right_nm = (limit + RELEASE_NMPS * late_s for limit in self._limits)
+        return Demand(request.value, request.slope, left_nm, right_nm, slope)

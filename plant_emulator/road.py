@@ -1,0 +1,61 @@
+"""The road by travelled distance: friction per side, grade, and what friction does to the tyre."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from plant_emulator.bounds import NonNegative, Table
+from plant_emulator.compiled import compiled
+
+Friction = Annotated[float, Meta(gt=0.0, le=1.5)]
+Grade = Annotated[float, Meta(ge=-0.2, le=0.2)]
+
+FROM_M, MU_LEFT, MU_RIGHT, GRADE, PEAK_ONLY = range(5)
+
+
+class Patch(Table, frozen=True):
+    """Road from ``from_m`` (of the front axle) to the next patch.
+
+    ``grade`` is rise over run, uphill positive.  ``scaling`` says what friction
+    does to the tyre's curve: ``shape`` scales all of it (the paper's
+    assumption), ``peak`` only the peak, so that the stiffness stays and the
+    best slip shrinks with mu.
+    """
+
+    from_m: NonNegative = 0.0
+    mu: Friction | None = None
+    mu_left: Friction | None = None
+    mu_right: Friction | None = None
+    grade: Grade = 0.0
+    scaling: Literal["shape", "peak"] = "shape"
+
+    def __post_init__(self) -> None:
+        """Refuse a patch whose friction is not given exactly once per side."""
+        sides = (self.mu_left, self.mu_right)
+        if (self.mu is None) == (sides == (None, None)) or sides.count(None) == 1:
+            raise ValueError("give either `mu` or both `mu_left` and `mu_right`")
+
+    @property
+    def row(self) -> tuple[float, float, float, float, float]:
+        """The patch as compiled code reads it."""
+        left = self.mu if self.mu_left is None else self.mu_left
+        right = self.mu if self.mu_right is None else self.mu_right
+        return (self.from_m, left or 0.0, right or 0.0, self.grade, float(self.scaling == "peak"))
+
+
+def road_table(patches: tuple[Patch, ...]) -> NDArray[np.float64]:
+    """Return the patches as an array, (patches, 5), columns as named above."""
+    return np.array([patch.row for patch in patches])
+
+
+@compiled
+def patch_at(road: NDArray[np.float64], position_m: float) -> int:
+    """Row of the patch under ``position_m``; the first one reaches back without end."""
+    row = 0
+    while row + 1 < road.shape[0] and position_m >= road[row + 1, FROM_M]:
+        row += 1
+    return row

@@ -1,0 +1,117 @@
+"""A scenario: one TOML file that says everything about a run, checked when it is read."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from plant_emulator.bounds import NonNegative, Positive, Table
+from plant_emulator.driver import Driver
+from plant_emulator.quarter_car import QuarterCar
+from plant_emulator.road import Patch
+from tcs_hil.config import read_toml
+from tcs_hil.errors import ConfigError
+
+LIBRARY = Path(__file__).parent / "scenarios"
+
+Variant = Literal["quarter-car", "vehicle"]
+
+
+class VehicleTable(Table, frozen=True):
+    """Which car, and where it differs from the default one."""
+
+    variant: Variant = "vehicle"
+    quarter_car: QuarterCar = QuarterCar()
+
+
+class ControllerTable(Table, frozen=True):
+    """Which control law the bench starts against this scenario; the emulator does not read it."""
+
+    kind: Literal["off", "pi", "kmpc", "nmpc"] = "nmpc"
+    preset: str = "default"
+
+
+class Expect(Table, frozen=True):
+    """A limit the bench judges: a signal in every sample of the window, or a metric over it."""
+
+    op: Literal["<", "<=", ">", ">=", "=="]
+    value: float
+    signal: str | None = None
+    metric: str | None = None
+    from_s: NonNegative = 0.0
+    to_s: Positive | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a limit on nothing, on two things or over an empty window."""
+        if (self.signal is None) == (self.metric is None):
+            raise ValueError("give either `signal` or `metric`")
+        if self.to_s is not None and self.to_s <= self.from_s:
+            raise ValueError("`to_s` must be greater than `from_s`")
+
+
+class Scenario(Table, frozen=True):
+    """Everything about one run; it ends at ``duration_s`` or at ``end_distance_m``."""
+
+    description: str
+    driver: Driver
+    duration_s: Annotated[float, Meta(gt=0.0, le=86_400.0)]
+    end_distance_m: Positive | None = None
+    start_speed_kmph: Annotated[float, Meta(ge=0.0, le=200.0)] = 0.0
+    vehicle: VehicleTable = VehicleTable()
+    road: Annotated[tuple[Patch, ...], Meta(min_length=1)] = (Patch(mu=1.0),)
+    controller: ControllerTable = ControllerTable()
+    expect: tuple[Expect, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse a road whose patches are not in the order of travel."""
+        if any(later.from_m <= earlier.from_m for earlier, later in pairwise(self.road)):
+            raise ValueError("`from_m` must increase from one `[[road]]` patch to the next")
+
+    @property
+    def start_speed_mps(self) -> float:
+        """Speed at the start, all wheels rolling freely."""
+        return self.start_speed_kmph / 3.6
+
+    def with_variant(self, variant: Variant) -> Scenario:
+        """The same scenario driven by the other car."""
+        vehicle = msgspec.structs.replace(self.vehicle, variant=variant)
+        return msgspec.structs.replace(self, vehicle=vehicle)
+
+
+class Listing(msgspec.Struct, frozen=True):
+    """A shipped scenario: its suite is the folder it lies in."""
+
+    name: str
+    suite: str
+    description: str
+
+
+def load_scenario(name_or_path: str | Path) -> Scenario:
+    """Read a shipped scenario by name, or any file by its path.
+
+    Raises:
+        ConfigError: there is no such scenario or file, it is not TOML, or a key
+            is unknown or out of bounds; file and key are named.
+    """
+    return read_toml(_find(name_or_path), Scenario)
+
+
+def list_scenarios() -> list[Listing]:
+    """Every shipped scenario, by suite and name."""
+    return [
+        Listing(path.stem, path.parent.name, read_toml(path, Scenario).description)
+        for path in sorted(LIBRARY.glob("*/*.toml"))
+    ]
+
+
+def _find(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if path.suffix == ".toml" or len(path.parts) > 1:
+        return path
+    for shipped in LIBRARY.glob(f"*/{path.name}.toml"):
+        return shipped
+    raise ConfigError(f"scenario {str(name_or_path)!r} is neither a file nor one that is shipped")

@@ -1,0 +1,82 @@
+"""Which bus to use: the one place that turns python-can's errors into ours."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+from typing import Any
+
+import can
+from can.interfaces.socketcan import SocketcanBus
+
+from tcs_hil.canbus.embedded import EmbeddedBus
+from tcs_hil.errors import BusError
+
+RECEIVE_BUFFER_BYTES = 4 << 20
+"""The kernel's default holds some 280 frames: a fifth of a second of this bus."""
+_SO_RCVBUFFORCE = 33  # asm-generic/socket.h; not in the socket module
+
+
+def open_bus(
+    interface: str = "auto", channel: str = "vcan0", bitrate: int | None = None
+) -> tuple[can.BusABC, str]:
+    """Open a CAN bus; the options mean what they mean in python-can.
+
+    ``auto`` takes SocketCAN where the kernel has an interface called ``channel``
+    and the embedded bus where it has none and the name begins with ``vcan``.
+
+    Returns:
+        The bus and a line that says which one it is.
+
+    Raises:
+        BusError: The interface is unknown, missing or cannot be opened.
+    """
+    if interface == "auto":
+        interface, reason = _choose(channel)
+    else:
+        reason = ""
+    return _open(interface, channel, bitrate), f"{interface} {channel}{reason}"
+
+
+def _choose(channel: str) -> tuple[str, str]:
+    if _is_can_interface(channel):
+        return "socketcan", ""
+    if channel.startswith("vcan"):
+        return "embedded", f" (no SocketCAN interface {channel} in this kernel)"
+    raise BusError(f"there is no CAN interface {channel}; {_remedy(channel)}")
+
+
+def _is_can_interface(name: str) -> bool:
+    try:
+        socket.if_nametoindex(name)
+        socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW).close()
+    except (OSError, AttributeError):
+        return False
+    return True
+
+
+def _open(interface: str, channel: str, bitrate: int | None) -> can.BusABC:
+    options: dict[str, Any] = {} if bitrate is None else {"bitrate": bitrate}
+    try:
+        if interface == "embedded":
+            return EmbeddedBus(channel, **options)
+        bus = can.Bus(channel=channel, interface=interface, **options)
+    except (can.CanError, NotImplementedError, OSError, ValueError, TypeError) as error:
+        remedy = f"; {_remedy(channel)}" if interface == "socketcan" else ""
+        raise BusError(f"cannot open {interface} {channel}: {error}{remedy}") from error
+    if isinstance(bus, SocketcanBus):
+        _enlarge_receive_buffer(bus.socket)
+    return bus
+
+
+def _enlarge_receive_buffer(sock: socket.socket) -> None:
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+    # Past net.core.rmem_max only with CAP_NET_ADMIN; without it the maximum has to do.
+    with contextlib.suppress(PermissionError):
+        sock.setsockopt(socket.SOL_SOCKET, _SO_RCVBUFFORCE, RECEIVE_BUFFER_BYTES)
+
+
+def _remedy(channel: str) -> str:
+    if channel.startswith("vcan"):
+        return f"make it with 'ip link add dev {channel} type vcan && ip link set {channel} up'"
+    return f"bring it up with 'ip link set {channel} up type can bitrate 500000'"

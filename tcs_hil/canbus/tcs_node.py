@@ -1,0 +1,109 @@
+"""The traction control service as a node on the bus.  Pure: time is an argument."""
+
+from __future__ import annotations
+
+import math
+
+from tcs_hil.canbus.ceiling import ceiling_codes
+from tcs_hil.canbus.contract import TCS
+from tcs_hil.canbus.database import Database
+from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox
+from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
+from tcs_hil.signals import Command, Measurement
+
+
+class TcsNode:
+    """Turns frames into a measurement and a command into frames.
+
+    Until a message has arrived its speeds and torques are zero, its validity
+    flags false and its age infinite.
+    """
+
+    def __init__(self, database: Database) -> None:
+        messages = database.messages
+        self._front = Mailbox(messages["WheelSpeedsFront"], (0.0, 0.0, 0, 0))
+        self._rear = Mailbox(messages["WheelSpeedsRear"], (0.0, 0.0, 0, 0, 0.0, 0))
+        self._motor = Mailbox(messages["MotorState"], (0.0, 0.0, 0.0, 0.0))
+        self._driver = Mailbox(messages["DriverRequest"], (0.0, 0.0))
+        self._bench = Mailbox(messages["BenchTick"], (0,))
+        self._inbox = Inbox(
+            [self._front, self._rear, self._motor, self._driver, self._bench],
+            own_ids=database.frame_ids_of(TCS),
+        )
+        self._limit = Outbox(messages["TorqueLimit"])
+        self._status = Outbox(messages["TcsStatus"])
+        self._bench_done = Outbox(messages["BenchTickDone"])
+        self._ceilings = ceiling_codes(messages["TorqueLimit"])
+
+    @property
+    def counters(self) -> InboxCounters:
+        """What became of the frames fed so far."""
+        return self._inbox.counters
+
+    @property
+    def newest_wheel_stamp_ns(self) -> int | None:
+        """Stamp of the newest good wheel-speed frame: where the latency starts."""
+        return max(
+            (s for s in (self._front.stamp_ns, self._rear.stamp_ns) if s is not None), default=None
+        )
+
+    @property
+    def bench_tick(self) -> int | None:
+        """Newest lockstep tick the bench has completed, None before the first."""
+        return None if self._bench.stamp_ns is None else int(self._bench.values[0])
+
+    def feed(self, frame_id: int, data: bytes, stamp_ns: int) -> bool:
+        """Take one frame; True if it was good and its values are now the newest."""
+        return self._inbox.feed(frame_id, data, stamp_ns)
+
+    def measurement(self, now_ns: int) -> Measurement:
+        """Newest value of every input and its age at ``now_ns``."""
+        fl, fr, fl_valid, fr_valid = self._front.values
+        rl, rr, rl_valid, rr_valid, accel, accel_valid = self._rear.values
+        motor_left, motor_right, torque_left, torque_right = self._motor.values
+        driver_left, driver_right = self._driver.values
+        return Measurement(
+            wheel_speed_radps=(fl, fr, rl, rr),
+            wheel_speed_valid=(bool(fl_valid), bool(fr_valid), bool(rl_valid), bool(rr_valid)),
+            motor_speed_radps=(motor_left, motor_right),
+            motor_torque_nm=(torque_left, torque_right),
+            driver_torque_nm=(driver_left, driver_right),
+            accel_x_mps2=accel if accel_valid else math.nan,
+            front_speed_age_s=self._front.age_s(now_ns),
+            rear_speed_age_s=self._rear.age_s(now_ns),
+            motor_age_s=self._motor.age_s(now_ns),
+            driver_age_s=self._driver.age_s(now_ns),
+        )
+
+    def frames(self, command: Command, now_ns: int, tick_overruns: int = 0) -> list[OutgoingFrame]:
+        """Frames of this tick: the status when its cycle is due, the torque limits last.
+
+        The limits go out with every call, so the call is the cycle.
+        """
+        frames = []
+        if self._status.is_due(now_ns):
+            frames.append(self._status_frame(command, tick_overruns))
+        frames.append(self._limit_frame(command))
+        return frames
+
+    def bench_tick_done(self, tick: int) -> OutgoingFrame:
+        """Tell the bench, in lockstep, that everything of this tick has been sent."""
+        return self._bench_done.frame(tick)
+
+    def _limit_frame(self, command: Command) -> OutgoingFrame:
+        left, right = self._ceilings
+        return self._limit.frame(
+            left.to_bus(command.limits.left_nm),
+            right.to_bus(command.limits.right_nm),
+            *command.active,
+            command.state,
+        )
+
+    def _status_frame(self, command: Command, tick_overruns: int) -> OutgoingFrame:
+        return self._status.frame(
+            *command.slip_ratio,
+            command.slip_reference,
+            command.controller,
+            command.fault_code,
+            tick_overruns,
+        )

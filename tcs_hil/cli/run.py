@@ -1,0 +1,69 @@
+"""``tcs-hil run``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+from msgspec.structs import replace
+
+from tcs_hil.cli.options import bus_options, json_option
+from tcs_hil.config import read_toml
+from tcs_hil.service.settings import ServiceConfig
+
+
+@click.command()
+@click.option(
+    "--config",
+    "config_path",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="TOML file; options given here win over it.",
+)
+@click.option("--controller", type=click.Choice(["off", "pi", "kmpc", "nmpc"]))
+@click.option(
+    "--model", type=click.Path(dir_okay=False), help="Koopman predictor made by `tcs-hil identify`."
+)
+@bus_options
+@click.option(
+    "--trigger",
+    type=click.Choice(["timer", "lockstep"]),
+    help="timer: the 2 ms grid; lockstep: a bench paces the ticks.",
+)
+@click.option("--phase-us", type=int, help="Shift of the 2 ms grid.")
+@click.option(
+    "--flight-recording",
+    "recording",
+    type=click.Path(dir_okay=False),
+    help="Write every tick into this file.",
+)
+@json_option
+def command(config_path: Path | None, as_json: bool, **options: Any) -> None:
+    """Run the traction control service until SIGINT or SIGTERM, then sum the run up.
+
+    Example: tcs-hil run --controller nmpc --channel vcan0 --flight-recording run.tcsrec
+    """
+    from tcs_hil.cli.summary import show_summary
+    from tcs_hil.service.daemon import serve
+
+    config = ServiceConfig() if config_path is None else read_toml(config_path, ServiceConfig)
+    summary = serve(_with_options(config, options), click.echo)
+    if summary is not None:
+        show_summary(summary, as_json)
+
+
+def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConfig:
+    """The configuration with what was said on the command line put on top."""
+
+    def said(**keys: str) -> dict[str, Any]:
+        return {key: options[name] for key, name in keys.items() if options[name] is not None}
+
+    return replace(
+        config,
+        **said(controller="controller", model="model"),
+        bus=replace(
+            config.bus, **said(interface="interface", channel="channel", bitrate="bitrate")
+        ),
+        tick=replace(config.tick, **said(trigger="trigger", phase_us="phase_us")),
+        recorder=replace(config.recorder, **said(path="recording")),
+    )

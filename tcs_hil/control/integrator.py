@@ -1,0 +1,33 @@
+"""The integral of the slip error, Eq. (e_int), with the authors' anti-windup."""
+
+from __future__ import annotations
+
+REDUCTION_THRESHOLD_NM = 1.0
+
+
+class SlipErrorIntegral:
+    """e_int of one wheel, in seconds of unit slip; both predictive laws share it.
+
+    It advances only while the law reduces the driver's torque, by more than
+    1 Nm; otherwise the error says nothing about the law and e_int would wind up
+    for as long as the driver's ramp takes.
+
+    The torque is compared with the request it was computed for.  Comparing it
+    with the next request looks the same and is a trap: the paper's ramp rises
+    by exactly 1 Nm per tick, so rounding alone would decide, and does: e_int
+    then winds up before the slip is anywhere near its reference.
+    """
+
+    def __init__(self, slip_reference: float, period_s: float) -> None:
+        self._slip_reference = slip_reference
+        self._period_s = period_s
+        self.value_s = 0.0
+
+    def advance(self, slip_ratio: float, torque_nm: float, torque_ref_nm: float) -> None:
+        """Euler step over the period in which ``torque_nm`` answers ``torque_ref_nm``."""
+        if torque_ref_nm > 0.0 and abs(torque_ref_nm - torque_nm) > REDUCTION_THRESHOLD_NM:
+            self.value_s += self._period_s * (self._slip_reference - slip_ratio)
+
+    def reset(self) -> None:
+        """Back to zero."""
+        self.value_s = 0.0

@@ -1,0 +1,1 @@
+"""The daemon: its configuration, its parts wired together, and its life."""

@@ -1,0 +1,106 @@
+"""The daemon's life: open, announce, tick until told to stop, sum up."""
+
+from __future__ import annotations
+
+import platform
+import tempfile
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+import can
+
+from tcs_hil.canbus.bus import open_bus
+from tcs_hil.canbus.database import load_database
+from tcs_hil.canbus.port import CanPort
+from tcs_hil.canbus.tcs_node import TcsNode
+from tcs_hil.runtime import recording
+from tcs_hil.runtime.clock import MonotonicClock
+from tcs_hil.runtime.lockstep import LockstepTrigger
+from tcs_hil.runtime.loop import Loop
+from tcs_hil.runtime.notify import notify
+from tcs_hil.runtime.realtime import prepare
+from tcs_hil.runtime.recorder import FlightRecorder
+from tcs_hil.runtime.recording import RunInfo
+from tcs_hil.runtime.stop import StopRequest
+from tcs_hil.runtime.summary import Summary, summarise
+from tcs_hil.runtime.trigger import TimerTrigger, Trigger
+from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.wiring import build_laws, build_pipeline
+
+NS_PER_S = 1_000_000_000
+
+
+def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
+    """Run the service until SIGTERM or SIGINT and sum the run up.
+
+    Raises:
+        TcsError: DBC, model, interface or recording cannot be used.
+    """
+    clock = MonotonicClock()
+    database = load_database(None if config.bus.database is None else Path(config.bus.database))
+    laws = build_laws(config, clock)
+    with ExitStack() as cleanup:
+        stop = cleanup.enter_context(StopRequest())
+        bus, description = open_bus(
+            config.bus.interface, config.bus.channel, config.bus.bitrate
+        )
+        port = CanPort(bus, reopen=lambda: _reopened(config))
+        cleanup.callback(port.close)
+        path = _recording_path(config, cleanup)
+        recorder = cleanup.enter_context(_recorder(config, path, description))
+        node = TcsNode(database)
+        loop = Loop(
+            trigger=_trigger(config, clock, port, node),
+            port=port,
+            node=node,
+            pipeline=build_pipeline(config, laws),
+            laws=laws,
+            clock=clock,
+            write=recorder.write,
+            healthy=_feed_watchdog,
+        )
+        announce(f"bus: {description}")
+        announce(f"controller: {config.controller}, slip reference {config.control.slip_reference}")
+        if config.tick.trigger == "timer":
+            for grant in prepare():
+                announce(f"{'with' if grant.got else 'without'} {grant.what} ({grant.why})")
+        notify("READY=1")
+        loop.run(stop.requested)
+        notify("STOPPING=1")
+        return summarise(recording.read(path))
+
+
+def _trigger(config: ServiceConfig, clock: MonotonicClock, port: CanPort, node: TcsNode) -> Trigger:
+    period_ns = _period_ns(config)
+    if config.tick.trigger == "lockstep":
+        return LockstepTrigger(clock, port, node, period_ns)
+    return TimerTrigger(clock, port, period_ns, config.tick.phase_us * 1000)
+
+
+def _recorder(config: ServiceConfig, path: Path, bus: str) -> FlightRecorder:
+    run = RunInfo(
+        period_ns=_period_ns(config),
+        started_monotonic_ns=time.monotonic_ns(),
+        started_realtime_ns=time.time_ns(),
+        controller=config.controller,
+        bus=bus,
+        machine=f"{platform.node()} {platform.release()} {platform.machine()}",
+    )
+    return FlightRecorder(path, run, config.recorder.ticks)
+
+
+def _recording_path(config: ServiceConfig, cleanup: ExitStack) -> Path:
+    """Where the recording goes: without a wish it only lives until it has been summed up."""
+    if config.recorder.path is not None:
+        return Path(config.recorder.path)
+    return Path(cleanup.enter_context(tempfile.TemporaryDirectory(prefix="tcs-hil."))) / "flight"
+
+
+def _reopened(config: ServiceConfig) -> can.BusABC:
+    return open_bus(config.bus.interface, config.bus.channel, config.bus.bitrate)[0]
+
+
+def _period_ns(config: ServiceConfig) -> int:
+    return round(config.control.period_s * NS_PER_S)

@@ -1,0 +1,59 @@
+"""Everything ``tcs-hil run`` can be told, from one TOML file and the command line."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.gate import GateSettings
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import ControllerKind
+from tcs_hil.supervisor import SupervisorSettings
+
+ControllerName = Literal["off", "pi", "kmpc", "nmpc"]
+TriggerName = Literal["timer", "lockstep"]
+
+
+class BusSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where the frames are, in python-can's terms; ``auto`` is explained by ``open_bus``."""
+
+    interface: str = "auto"
+    channel: str = "vcan0"
+    bitrate: Annotated[int, Meta(gt=0)] | None = None
+    database: str | None = None
+
+
+class TickSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What starts a tick: the 2 ms grid shifted by ``phase_us``, or a bench in lockstep."""
+
+    trigger: TriggerName = "timer"
+    phase_us: Annotated[int, Meta(ge=0, lt=20_000)] = 0
+
+
+class RecorderSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Flight recording: none without a path; the newest ``ticks`` are kept."""
+
+    path: str | None = None
+    ticks: Annotated[int, Meta(ge=1, le=100_000_000)] = 300_000
+
+
+class ServiceConfig(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Everything ``tcs-hil run`` can be told."""
+
+    controller: ControllerName = "kmpc"
+    model: str | None = None
+    bus: BusSettings = BusSettings()
+    tick: TickSettings = TickSettings()
+    recorder: RecorderSettings = RecorderSettings()
+    control: ControlSettings = ControlSettings()
+    vehicle: Vehicle = Vehicle()
+    supervisor: SupervisorSettings = SupervisorSettings()
+    gate: GateSettings = GateSettings()
+
+    @property
+    def kind(self) -> ControllerKind:
+        """The control law as it is named on the bus."""
+        return ControllerKind[self.controller.upper()]

@@ -19,21 +19,24 @@ def run_realtime(
 ) -> Jitter:
     """Drive the plant to the end of its scenario, or until ``stop()``; returns the wake jitter.
 
-    Grid instants are multiples of 2 ms of the clock, plus ``phase_ns``.  The
-    state is that of the instant, however late the wake-up; a whole period late,
-    the instant is integrated over but not published, and there is no burst.
+    Grid instants are multiples of 2 ms of the clock, plus ``phase_ns``.  What is
+    sent is the state at the instant, however late the wake-up.  After a wake-up
+    late by whole periods the newest instant is served; those before it are
+    integrated over but not published, so that there is no burst.
     """
     start_ns = _next_instant(clock.now_ns(), phase_ns)
     jitter_ns = []
     instant_ns = start_ns
     while not emulator.plant.finished and not stop():
         clock.sleep_until(instant_ns)
-        jitter_ns.append(clock.now_ns() - instant_ns)
+        woken_ns = clock.now_ns()
+        jitter_ns.append(woken_ns - instant_ns)
+        instant_ns = max(instant_ns, _last_instant(woken_ns, phase_ns))
         for frame in port.receive():
             emulator.hear(frame.frame_id, frame.data, frame.stamp_ns - start_ns)
         emulator.advance_to(instant_ns - start_ns)
         emulator.publish()
-        instant_ns = max(instant_ns + PERIOD_NS, _last_instant(clock.now_ns(), phase_ns))
+        instant_ns += PERIOD_NS
     return np.array(jitter_ns, dtype=np.int64)
 
 

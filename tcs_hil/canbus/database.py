@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import cantools
+from cantools.database import UnsupportedDatabaseFormatError
 from cantools.database.can import Database as CanDatabase
 from cantools.database.can import Message, Signal
 
@@ -81,11 +82,12 @@ def _read(source: str, path: Path | None) -> str:
 
 def _parse(source: str, text: str) -> CanDatabase:
     try:
-        parsed = cantools.database.load_string(text, database_format="dbc")
-    except (cantools.Error, ValueError, KeyError, TypeError, IndexError) as error:
-        raise DatabaseError(
-            f"{source} is not a valid DBC: {' '.join(str(error).split())}"
-        ) from error
+        parsed = cantools.database.load_string(
+            text, database_format="dbc", prune_choices=False
+        )
+    except UnsupportedDatabaseFormatError as error:
+        sentence = " ".join(str(error.e_dbc).split())
+        raise DatabaseError(f"{source} is not a valid DBC: {sentence}") from error
     if not isinstance(parsed, CanDatabase):
         raise DatabaseError(f"{source} is not a CAN database")
     return parsed
@@ -109,6 +111,7 @@ def _message_spec(parsed: CanDatabase, contract: MessageContract) -> MessageSpec
 
 
 def signal_spec(message: Message, signal: Signal) -> SignalSpec:
+    """Take a signal over from cantools, which has checked that it fits its message."""
     raw_labels: Mapping[int, object] = signal.choices or {}
     return SignalSpec(
         name=signal.name,

@@ -167,5 +167,5 @@ def _attribute(message: Message, name: str) -> object:
 
 
 def _fault(message: Message, what: str, signal: str | None = None) -> DatabaseError:
-    culprit = f"message {message.name}" if signal is None else f"signal {signal} of {message.name}"
-    return DatabaseError(f"{culprit} {what}")
+    part = "" if signal is None else f"signal {signal} of "
+    return DatabaseError(f"{part}message {message.name} {what}")

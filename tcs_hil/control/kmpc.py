@@ -1,4 +1,4 @@
-"""The Koopman MPC, step by step as the paper writes it: lift, gradient, box QP, first input."""
+"""The Koopman MPC, step by step as the paper writes it: lift, gradient, box QP."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from tcs_hil.control.condense import DenseForm, condense, extend
 from tcs_hil.control.integrator import SlipErrorIntegral
-from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
-from tcs_hil.control.qp import BoxSolution, OsqpBox
-from tcs_hil.control.screening import clamp, settled
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.predictive import PredictiveController
+from tcs_hil.control.protocol import WheelState
+from tcs_hil.control.qp import OsqpBox
 from tcs_hil.control.settings import ControlSettings, KmpcSettings
 from tcs_hil.errors import ConfigError
 from tcs_hil.model.predictor import KoopmanPredictor
@@ -17,65 +18,59 @@ from tcs_hil.model.predictor import KoopmanPredictor
 FloatArray = NDArray[np.float64]
 
 
-class KoopmanMpc:
-    """One wheel's Koopman MPC, Eq. (opt_LTI), over N inputs u_0..u_{N-1}.
+class KoopmanOptimiser:
+    """The quadratic program of Eq. (opt_LTI) over the scaled torques U = [u_0 .. u_{N-1}]."""
 
-    Inputs are in the predictor's unit: torque in standard deviations from its
-    mean.  Raises ConfigError for a predictor made for another period.
-    """
-
-    def __init__(self, settings: ControlSettings, predictor: KoopmanPredictor) -> None:
-        if predictor.period_s != settings.period_s:
-            raise ConfigError(
-                f"period_s is {settings.period_s}, "
-                f"but the predictor was identified for {predictor.period_s}"
-            )
+    def __init__(
+        self, predictor: KoopmanPredictor, tuning: KmpcSettings, slip_reference: float
+    ) -> None:
         self._predictor = predictor
-        self._slip_reference = settings.slip_reference
-        self._horizon = settings.kmpc.horizon
-        self._two_w_u = 2.0 * settings.kmpc.weight_reduction
-        dense = condense(extend(predictor), self._horizon)
-        hessian, self._gradient_of_state = quadratic_cost(dense, settings.kmpc)
+        self._slip_reference = slip_reference
+        self._reduction_pull = 2.0 * tuning.weight_reduction
+        dense = condense(extend(predictor), tuning.horizon)
+        hessian, self._gradient_map = quadratic_cost(dense, tuning)
         self._qp = OsqpBox(hessian)
-        self._integral = SlipErrorIntegral(settings.slip_reference, settings.period_s)
-        self._lower = np.full(self._horizon, predictor.scale_input(0.0))  # (N,), zero torque
+        self._zero_torque = float(predictor.scale_input(0.0))
 
-    def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
-        """Propose the motor torque for the coming period."""
-        trivial = settled(wheel, torque_ref_nm)
-        if trivial is not None:
-            return trivial
+    def plan(self, wheel: WheelState, integral_s: float, torque_ref_nm: float) -> Plan:
+        """Best torques (N,) in Nm within [0, torque_ref_nm]."""
         z = self._predictor.lift(wheel.slip_speed_mps, wheel.wheel_speed_radps)  # (nz,)
-        xi = np.concatenate((z, (self._integral.value_s, self._slip_reference)))  # (nz + 2,)
+        xi = np.concatenate((z, (integral_s, self._slip_reference)))  # (nz + 2,)
         torque_ref = self._predictor.scale_input(torque_ref_nm)
-        gradient = self._gradient_of_state @ xi - self._two_w_u * torque_ref  # (N,)
-        plan = self._qp.solve(gradient, self._lower, np.full(self._horizon, torque_ref))
-        proposal = self._first_input(plan, torque_ref_nm)
-        self._integral.advance(wheel.slip_ratio, proposal.torque_nm, torque_ref_nm)
-        return proposal
+        gradient = self._gradient_map @ xi - self._reduction_pull * torque_ref  # (N,)
+        scaled = self._qp.solve(gradient, self._zero_torque, torque_ref)
+        return scaled._replace(inputs=self._in_nm(scaled.inputs))
 
     def reset(self) -> None:
-        """Forget the integral and the last plan."""
-        self._integral.reset()
+        """Forget the last plan."""
         self._qp.reset()
 
-    def _first_input(self, plan: BoxSolution, torque_ref_nm: float) -> Proposal:
-        if plan.status is SolveStatus.FAILED:
-            self._qp.reset()
-            return Proposal(torque_ref_nm, plan.status, plan.iterations)
+    def _in_nm(self, scaled_torques: FloatArray) -> FloatArray:
         scaling = self._predictor.scaling
-        torque_nm = scaling.torque_mean_nm + scaling.torque_std_nm * float(plan.x[0])
-        return Proposal(clamp(torque_nm, torque_ref_nm), plan.status, plan.iterations)
+        return scaled_torques * scaling.torque_std_nm + scaling.torque_mean_nm
 
 
-def quadratic_cost(dense: DenseForm, weights: KmpcSettings) -> tuple[FloatArray, FloatArray]:
-    """Hessian (N, N) and the map (N, nz + 2) from xi_0 to the gradient at U = 0.
+def quadratic_cost(dense: DenseForm, tuning: KmpcSettings) -> tuple[FloatArray, FloatArray]:
+    """Hessian (N, N) of the cost, and the map (N, nz + 2) from xi_0 to its gradient at U = 0.
 
     The cost is the sum over the horizon of w_p (kappa_ref - kappa)² + w_i e_int²
-    + w_u (T_ref - u)²; the part of the gradient that comes from T_ref is left out.
+    + w_u (T_ref - u)².  T_ref is no part of xi_0: its pull on the gradient,
+    -2 w_u T_ref on every input, is the caller's to add.
     """
-    w_p, w_i, w_u = weights.weight_slip, weights.weight_integral, weights.weight_reduction
+    w_p, w_i, w_u = tuning.weight_slip, tuning.weight_integral, tuning.weight_reduction
     q = np.array([[w_p, 0.0, -w_p], [0.0, w_i, 0.0], [-w_p, 0.0, w_p]])  # on [kappa, e_int, ref]
-    weighted = dense.theta.T @ np.kron(np.eye(weights.horizon), q)  # (N, 3 N)
-    hessian = 2.0 * (weighted @ dense.theta + w_u * np.eye(weights.horizon))
+    weighted = dense.theta.T @ np.kron(np.eye(tuning.horizon), q)  # (N, 3 N)
+    hessian = 2.0 * (weighted @ dense.theta + w_u * np.eye(tuning.horizon))
     return hessian, 2.0 * weighted @ dense.gamma
+
+
+def koopman_mpc(settings: ControlSettings, predictor: KoopmanPredictor) -> PredictiveController:
+    """One wheel's KMPC.  Raises ConfigError for a predictor made for another period."""
+    if predictor.period_s != settings.period_s:
+        raise ConfigError(
+            f"period_s is {settings.period_s}, but the predictor is for {predictor.period_s}"
+        )
+    return PredictiveController(
+        KoopmanOptimiser(predictor, settings.kmpc, settings.slip_reference),
+        SlipErrorIntegral(settings.slip_reference, settings.period_s),
+    )

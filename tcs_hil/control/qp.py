@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import osqp
 from numpy.typing import NDArray
 from scipy import sparse
 
+from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import SolveStatus
 
 FloatArray = NDArray[np.float64]
@@ -23,69 +24,70 @@ _STATUS = {
 }
 
 
-class BoxSolution(NamedTuple):
-    """Minimiser of one problem; meaningless when the status is ``FAILED``."""
-
-    x: FloatArray  # (n,)
-    status: SolveStatus
-    iterations: int
-
-
 class OsqpBox:
-    """Minimise x'Hx/2 + g'x over lower <= x <= upper, H (n, n) positive definite.
+    """Minimise x'Hx/2 + g'x over lower <= x_i <= upper, H (n, n) positive definite.
 
     Three choices make OSQP both exact and quick here.  The objective is scaled
     to a largest eigenvalue of 1, because the tolerances are absolute.  The
     penalty is fixed at the geometric mean of the extreme eigenvalues, near the
-    best for ADMM, so that no run depends on an earlier one's adaptation.  And
-    the box is open at set-up: equal bounds would fix a penalty for equalities.
+    best for ADMM, so that no solve depends on how an earlier one adapted it.
+    And the box is open at set-up: equal bounds would choose the penalty of
+    equality constraints.
     """
 
-    def __init__(self, hessian: FloatArray) -> None:
+    def __init__(self, hessian: FloatArray, max_iterations: int = MAX_ITERATIONS) -> None:
         eigenvalues = np.linalg.eigvalsh(hessian)
         self._scale = 1.0 / float(eigenvalues[-1])
-        self._n = len(hessian)
-        self._solver = self._set_up(
-            hessian * self._scale, math.sqrt(float(eigenvalues[0]) * self._scale)
-        )
+        self._lower = np.zeros(len(hessian))
+        self._upper = np.zeros(len(hessian))
+        penalty = math.sqrt(float(eigenvalues[0]) * self._scale)
+        self._solver = _compiled_solver(hessian * self._scale, penalty, max_iterations)
 
-    def _set_up(self, scaled_hessian: FloatArray, penalty: float) -> Any:
-        problem = osqp.OSQP(algebra="builtin")
-        problem.setup(
-            P=sparse.csc_matrix(np.triu(scaled_hessian)),
-            q=np.zeros(self._n),
-            A=sparse.csc_matrix(np.eye(self._n)),
-            l=np.full(self._n, -np.inf),
-            u=np.full(self._n, np.inf),
-            rho=penalty,
-            adaptive_rho=False,
-            scaling=0,
-            eps_abs=TOLERANCE,
-            eps_rel=0.0,
-            max_iter=MAX_ITERATIONS,
-            check_termination=CHECK_EVERY,
-            verbose=False,
-        )
-        # The compiled solver behind the public class: the same calls without the
-        # wrapper's copies of every result, which cost twice the solve itself.
-        return problem._solver
+    def solve(self, gradient: FloatArray, lower: float, upper: float) -> Plan:
+        """Solve for g (n,), warm from the last solution, which moves little between ticks.
 
-    def solve(self, gradient: FloatArray, lower: FloatArray, upper: FloatArray) -> BoxSolution:
-        """Solve for g, lower, upper (n,), warm from the last solution, which moves little.
-
-        The returned ``x`` lies in the box up to ``TOLERANCE``.  Nothing is raised:
-        a problem that is not finite, or a solver in trouble, is ``FAILED``.
+        The result lies in the box up to ``TOLERANCE``.  Nothing is raised: a
+        problem that is not finite, or a solver in trouble, is ``FAILED``.
         """
-        if not np.isfinite(gradient).all():
-            return BoxSolution(gradient, SolveStatus.FAILED, 0)
-        if (lower == upper).all():
-            return BoxSolution(lower, SolveStatus.OK, 0)
-        self._solver.update_data_vec(q=gradient * self._scale, l=lower, u=upper)
+        if not math.isfinite(gradient.sum() + lower + upper):
+            return Plan(gradient, SolveStatus.FAILED, 0)
+        self._lower.fill(lower)
+        self._upper.fill(upper)
+        if lower == upper:
+            return Plan(self._lower.copy(), SolveStatus.OK, 0)
+        self._solver.update_data_vec(q=gradient * self._scale, l=self._lower, u=self._upper)
         self._solver.solve()
         info = self._solver.info
         status = _STATUS.get(info.status_val, SolveStatus.FAILED)
-        return BoxSolution(self._solver.solution.x, status, info.iter)
+        return Plan(self._solver.solution.x, status, info.iter)
 
     def reset(self) -> None:
         """Forget the last solution: the next solve starts cold."""
-        self._solver.warm_start(x=np.zeros(self._n), y=np.zeros(self._n))
+        cold = np.zeros(len(self._lower))
+        self._solver.warm_start(x=cold, y=cold)
+
+
+def _compiled_solver(scaled_hessian: FloatArray, penalty: float, max_iterations: int) -> Any:
+    """The compiled solver behind ``osqp.OSQP``, set up with an open box.
+
+    It takes the same calls as the public class without that class's copy of
+    every result field, which costs twice the solve itself.
+    """
+    n = len(scaled_hessian)
+    problem = osqp.OSQP(algebra="builtin")
+    problem.setup(
+        P=sparse.csc_matrix(np.triu(scaled_hessian)),
+        q=np.zeros(n),
+        A=sparse.csc_matrix(np.eye(n)),
+        l=np.full(n, -np.inf),
+        u=np.full(n, np.inf),
+        rho=penalty,
+        adaptive_rho=False,
+        scaling=0,
+        eps_abs=TOLERANCE,
+        eps_rel=0.0,
+        max_iter=max_iterations,
+        check_termination=CHECK_EVERY,
+        verbose=False,
+    )
+    return problem._solver

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from tcs_hil.errors import ModelError
 from tcs_hil.model.dataset import Dataset, DatasetSettings, Progress, generate
-from tcs_hil.model.lifting import SLIP_RATIO, Lifting, fit_scaling, make_dictionary
-from tcs_hil.model.predictor import FitQuality, KoopmanPredictor, Provenance, Validity
+from tcs_hil.model.lifting import SLIP_RATIO, Lifting, make_dictionary
+from tcs_hil.model.predictor import KoopmanPredictor
+from tcs_hil.model.provenance import FitQuality, Provenance, Validity
+from tcs_hil.model.scaling import fit_scaling
 from tcs_hil.model.vehicle import Vehicle
 
 FloatArray = NDArray[np.float64]
@@ -64,7 +66,7 @@ def fit(z: FloatArray, u: FloatArray, z_next: FloatArray) -> Regression:
 def identify(
     settings: IdentificationSettings, seed: int = DEFAULT_SEED, progress: Progress | None = None
 ) -> KoopmanPredictor:
-    """Simulate the data set, lift it and fit the predictor; about two seconds.
+    """Simulate the data set, lift it and fit the predictor; about a second.
 
     Raises ModelError for an unknown dictionary or data that determine nothing.
     """

@@ -13,49 +13,11 @@ from numpy.typing import NDArray
 
 from tcs_hil.errors import ModelError
 from tcs_hil.model import archive
-from tcs_hil.model.dataset import DatasetSettings, Range
-from tcs_hil.model.lifting import SLIP_RATIO, Lifting, Scaling, make_dictionary
-from tcs_hil.model.vehicle import Positive, Vehicle
+from tcs_hil.model.lifting import SLIP_RATIO, Lifting, make_dictionary
+from tcs_hil.model.provenance import Provenance, Validity, provenance_of
+from tcs_hil.model.scaling import Scaling
 
 FloatArray = NDArray[np.float64]
-
-LAYOUT_VERSION = 1
-"""Of the model file; another number is refused, never guessed at."""
-
-
-class Validity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Smallest and largest value of each quantity in the data; nothing is known outside."""
-
-    speed_mps: Range
-    slip_ratio: Range
-    torque_nm: Range
-
-
-class FitQuality(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How the regression went, on the data it saw.
-
-    ``residual_rms`` is the one-step error of each observable, in the unit it has
-    in z; ``condition_number`` is that of [z, u] with columns of unit length.
-    """
-
-    samples: int
-    residual_rms: tuple[float, ...]
-    condition_number: float
-
-
-class Provenance(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Everything a predictor is, apart from its matrices: the model file's metadata."""
-
-    layout_version: int = LAYOUT_VERSION
-    period_s: Positive
-    dictionary: str
-    order: int
-    scaling: Scaling
-    validity: Validity
-    fit: FitQuality
-    vehicle: Vehicle
-    dataset: DatasetSettings
-    seed: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +104,7 @@ class KoopmanPredictor:
     def load(cls, path: Path, period_s: float) -> KoopmanPredictor:
         """Read a model file made for this sampling time.  Raises ModelError naming the file."""
         metadata, arrays = archive.read(path)
-        provenance = _decode(path, metadata)
+        provenance = provenance_of(path, metadata)
         if not math.isclose(provenance.period_s, period_s):
             raise ModelError(
                 f"model file '{path}' is for a period of {provenance.period_s} s, not {period_s} s"
@@ -158,22 +120,3 @@ class KoopmanPredictor:
 def default_model_path() -> Path:
     """The paper's predictor, identified with the default seed and shipped in the package."""
     return Path(__file__).with_name("paper.npz")
-
-
-def _decode(path: Path, metadata: bytes) -> Provenance:
-    """Metadata of a known layout; the version is looked at before anything else."""
-    try:
-        version = msgspec.json.decode(metadata, type=_Version).layout_version
-        if version == LAYOUT_VERSION:
-            return msgspec.json.decode(metadata, type=Provenance)
-    except msgspec.DecodeError as error:
-        raise ModelError(f"model file '{path}' has bad metadata: {error}") from error
-    raise ModelError(
-        f"model file '{path}' has layout {version}, this version reads {LAYOUT_VERSION}"
-    )
-
-
-class _Version(msgspec.Struct):
-    """The part of the metadata that every layout shares."""
-
-    layout_version: int

@@ -19,7 +19,7 @@ from tcs_hil.runtime import recording
 from tcs_hil.runtime.clock import MonotonicClock
 from tcs_hil.runtime.lockstep import LockstepTrigger
 from tcs_hil.runtime.loop import Loop
-from tcs_hil.runtime.notify import notify
+from tcs_hil.runtime.notify import Watchdog, notify
 from tcs_hil.runtime.realtime import prepare
 from tcs_hil.runtime.recorder import FlightRecorder
 from tcs_hil.runtime.recording import RunInfo
@@ -52,14 +52,16 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
         recorder = cleanup.enter_context(_recorder(config, path, description))
         node = TcsNode(database)
         loop = Loop(
-            trigger=_trigger(config, clock, port, node),
+            trigger=_trigger(
+                config, clock, port, node, database.messages["BenchTick"].frame_id
+            ),
             port=port,
             node=node,
             pipeline=build_pipeline(config, laws),
             laws=laws,
             clock=clock,
             write=recorder.write,
-            healthy=_feed_watchdog,
+            healthy=Watchdog().feed,
         )
         announce(f"bus: {description}")
         announce(f"controller: {config.controller}, slip reference {config.control.slip_reference}")
@@ -72,10 +74,12 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
         return summarise(recording.read(path))
 
 
-def _trigger(config: ServiceConfig, clock: MonotonicClock, port: CanPort, node: TcsNode) -> Trigger:
+def _trigger(
+    config: ServiceConfig, clock: MonotonicClock, port: CanPort, node: TcsNode, tick_id: int
+) -> Trigger:
     period_ns = _period_ns(config)
     if config.tick.trigger == "lockstep":
-        return LockstepTrigger(clock, port, node, period_ns)
+        return LockstepTrigger(clock, port, node, tick_id, period_ns)
     return TimerTrigger(clock, port, period_ns, config.tick.phase_us * 1000)
 
 

@@ -30,7 +30,7 @@ def build_laws(config: ServiceConfig, clock: Clock) -> Laws:
         predictor = KoopmanPredictor.load(path, config.control.period_s)
     left, right = (
         TimedController(
-            make_controller(config.kind, config.vehicle, config.control, predictor), clock
+            make_controller(config.kind, config.control, config.vehicle, predictor), clock
         )
         for _ in range(2)
     )

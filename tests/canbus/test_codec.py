@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tcs_hil.canbus.codec import compile_codec
 from tcs_hil.canbus.contract import CONTRACT
-from tcs_hil.canbus.database import DBC_ENCODING, load_database
+from tcs_hil.canbus.database import DBC_ENCODING, load_database, signal_spec
 
 DATABASE = load_database()
 REFERENCE = cantools.database.load_file("dbc/tcs.dbc", encoding=DBC_ENCODING)
@@ -102,8 +102,6 @@ BO_ 1 Mixed: 8 A
 
 def mixed_message(byte_orders):
     """Message with its signals of the given byte orders, by cantools and by us."""
-    from tcs_hil.canbus.database import signal_spec
-
     parsed = cantools.database.load_string(MOTOROLA_DBC, "dbc")
     message = parsed.get_message_by_name("Mixed")
     signals = [signal_spec(message, s) for s in message.signals if s.byte_order in byte_orders]

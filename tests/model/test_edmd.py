@@ -30,6 +30,11 @@ def test_the_residual_is_the_noise_of_the_data():
     assert found.quality.residual_rms == pytest.approx((0.1, 0.5), rel=0.03)
 
 
+def test_the_condition_number_is_one_for_orthogonal_columns_of_any_length():
+    z, u = np.diag([1.0, 1e-3, 1e6])[:, :2], np.array([[0.0], [0.0], [1e6]])
+    assert fit(z, u, z).quality.condition_number == pytest.approx(1.0)
+
+
 def test_the_regression_agrees_with_pykoop_on_the_same_lifted_data(identified):
     data = generate(Vehicle(), DatasetSettings(), identified.provenance.seed)
     z, z_next = identified.lift(*data.x.T), identified.lift(*data.x_next.T)

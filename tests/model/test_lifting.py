@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tcs_hil.errors import ModelError
-from tcs_hil.model.lifting import Lifting, Monomials, Scaling, fit_scaling, make_dictionary
+from tcs_hil.model.lifting import Lifting, Monomials, make_dictionary
+from tcs_hil.model.scaling import Scaling, fit_scaling
 from tcs_hil.model.vehicle import Vehicle
 
 SCALING = Scaling(

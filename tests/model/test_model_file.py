@@ -150,6 +150,13 @@ def test_metadata_that_make_no_sense_are_refused(tmp_path, metadata):
         load(resealed(tmp_path / "m.npz", metadata))
 
 
+def test_metadata_that_are_not_text_are_refused(tmp_path):
+    _, arrays = archive.read(SHIPPED)
+    archive.write(tmp_path / "u.npz", b'{"layout_version": "\xff"}', arrays)
+    with pytest.raises(ModelError, match=r"u\.npz' has bad metadata"):
+        load(tmp_path / "u.npz")
+
+
 @pytest.mark.parametrize("metadata", [{"order": 3}, {"order": 0}, {"dictionary": "splines"}])
 def test_a_dictionary_that_does_not_fit_the_matrices_is_refused(tmp_path, metadata):
     with pytest.raises(ModelError, match=r"d\.npz' is inconsistent"):

@@ -42,7 +42,9 @@ def test_a_scenario_runs_in_real_time_and_ends_well(invoke, tmp_path, channel):
     path.write_text(SHORT)
     record = tmp_path / "truth.npz"
     bus = ("--interface", "embedded", "--channel", channel)
-    status, out, err = invoke("run", "--scenario", str(path), *bus, "--record", str(record), "--json")
+    status, out, err = invoke(
+        "run", "--scenario", str(path), *bus, "--record", str(record), "--json"
+    )
     assert status == 0
     assert json.loads(out)["time_s"] == pytest.approx(0.1)
     assert "embedded" in err
@@ -75,7 +77,13 @@ def test_help_shows_an_example(invoke, command):
         (("run", "--scenario", "manoeuvre-1", "--vehicle", "boat"), "--vehicle"),
         (("run", "--scenario", "manoeuvre-1", "--interface", "carrier-pigeon"), "carrier-pigeon"),
         (("run", "--scenario", "manoeuvre-1", "--record", "/nowhere/truth.npz"), "/nowhere"),
-        (("run", "--wings",), "--wings"),
+        (
+            (
+                "run",
+                "--wings",
+            ),
+            "--wings",
+        ),
         (("fly",), "fly"),
     ],
 )

@@ -27,6 +27,8 @@ def test_the_request_follows_the_points(pedal, time_s, value, slope):
     assert pedal.at(time_s) == pytest.approx((value, slope))
 
 
-@pytest.mark.parametrize(("time_s", "change_s"), [(0.0, 0.1), (0.1, 0.6), (0.7, 1.0), (1.0, math.inf)])
+@pytest.mark.parametrize(
+    ("time_s", "change_s"), [(0.0, 0.1), (0.1, 0.6), (0.7, 1.0), (1.0, math.inf)]
+)
 def test_the_next_corner_is_known(pedal, time_s, change_s):
     assert pedal.next_change(time_s) == change_s

@@ -29,10 +29,10 @@ def emulator_for(scenario, port, path=None):
 
 
 def lockstep_run(scenario, channel, service, limit_nm):
-    with service(channel, limit_nm) as peer:
-        with closing(CanPort(open_bus("embedded", channel)[0], send_timeout_s=1.0)) as port:
-            emulator = emulator_for(scenario, port)
-            run_lockstep(emulator, port, never)
+    bus, _ = open_bus("embedded", channel)
+    with service(channel, limit_nm) as peer, closing(CanPort(bus, send_timeout_s=1.0)) as port:
+        emulator = emulator_for(scenario, port)
+        run_lockstep(emulator, port, never)
     return peer, emulator.plant.truth
 
 
@@ -50,11 +50,15 @@ def test_lockstep_runs_send_the_same_bytes(launch, channel, service):
     assert first.received == second.received
 
 
-def test_frames_of_a_tick_come_by_ascending_identifier_and_bench_tick_last(launch, channel, service):
+def test_frames_of_a_tick_come_by_ascending_identifier_and_bench_tick_last(
+    launch, channel, service
+):
     peer, _ = lockstep_run(launch, channel, service, limit_nm=40.0)
     ids = [frame_id for frame_id, _ in peer.received]
     bench = max(ids)
-    ticks = [list(g) for is_bench, g in itertools.groupby(ids, lambda i: i == bench) if not is_bench]
+    ticks = [
+        list(g) for is_bench, g in itertools.groupby(ids, lambda i: i == bench) if not is_bench
+    ]
     assert len(ticks) == 50
     assert all(tick == sorted(tick) for tick in ticks)
 
@@ -62,7 +66,7 @@ def test_frames_of_a_tick_come_by_ascending_identifier_and_bench_tick_last(launc
 def test_a_silent_service_is_named_in_one_sentence(launch, channel):
     with closing(CanPort(open_bus("embedded", channel)[0])) as port:
         emulator = emulator_for(launch, port)
-        with pytest.raises(BusError, match="no answer to tick 0 .* start `tcs-hil run"):
+        with pytest.raises(BusError, match=r"no answer to tick 0 .* start `tcs-hil run"):
             run_lockstep(emulator, port, never, timeout_s=0.01)
 
 
@@ -123,7 +127,7 @@ def test_a_late_wake_up_skips_instants_and_sends_no_burst(launch):
     instants = sorted({sent_ns for sent_ns, _ in port.sent})
     assert min(np.diff(instants)) > 800_000
     assert clock.time_ns == pytest.approx(PERIOD_NS + 100_000_000)
-    assert jitter_ns.size == 51 - 3
+    assert jitter_ns.size == 51 - 3  # one wake-up for the instants 2 to 5
 
 
 def test_in_real_time_a_limit_acts_from_its_receive_stamp(launch, command_frame):
@@ -134,7 +138,10 @@ def test_in_real_time_a_limit_acts_from_its_receive_stamp(launch, command_frame)
     emulator = emulator_for(launch, port)
     spy = []
     step = emulator.plant.step
-    emulator.plant.step = lambda limits, dt_s: (spy.append((emulator.plant.time_s, limits)), step(limits, dt_s))
+    emulator.plant.step = lambda limits, dt_s: (
+        spy.append((emulator.plant.time_s, limits)),
+        step(limits, dt_s),
+    )
     run_realtime(emulator, port, clock, never)
     ((time_s, limits),) = [entry for entry in spy if entry[1] is not None]
     assert time_s == pytest.approx(0.0047)

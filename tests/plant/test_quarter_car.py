@@ -30,7 +30,9 @@ def reference(cap_nm, end_s):
     """Integrate piece by piece: a step of the reference must not straddle a corner."""
     state, start = START, 0.0
     for corner in (0.1, 0.1 + 0.5 * cap_nm / 250.0, end_s):
-        piece = solve_ivp(paper, (start, corner), state, "DOP853", rtol=1e-13, atol=1e-13, args=(cap_nm,))
+        piece = solve_ivp(
+            paper, (start, corner), state, "DOP853", rtol=1e-13, atol=1e-13, args=(cap_nm,)
+        )
         state, start = piece.y[:, -1], corner
     return state
 

@@ -11,7 +11,8 @@ from tcs_hil.control.protocol import Proposal, WheelState
 from tcs_hil.estimator import Estimate
 from tcs_hil.gate import Permission
 from tcs_hil.pipeline import Trace
-from tcs_hil.runtime.record import Insight, Pass, Stamps
+from tcs_hil.runtime.record import Insight, Pass, Record, Stamps, record
+from tcs_hil.runtime.recording import RunInfo
 from tcs_hil.runtime.trigger import Tick
 from tcs_hil.signals import Command, ControllerKind, Measurement, TcsState, TorqueLimits
 from tcs_hil.supervisor import FaultCode, Verdict
@@ -136,3 +137,17 @@ def made_pass(number: int = 0, *, sent_us: int = 90, scheduled_ns: int = PERIOD_
 def insight(wheel_stamp_ns: int | None = None) -> Insight:
     counters = PortCounters(rx=101, tx=102, error_frames=1, rx_errors=2, tx_errors=3)
     return Insight(TRACE, (81, 82), wheel_stamp_ns, counters)
+
+
+RUN = RunInfo(
+    period_ns=PERIOD_NS,
+    started_monotonic_ns=1,
+    started_realtime_ns=2,
+    controller="nmpc",
+    bus="virtual:test",
+    machine="a test",
+)
+
+
+def numbered(number: int) -> Record:
+    return record(made_pass(number), insight())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.runtime.fakes import PERIOD_NS, FakeClock, FakePort
+from runtime.fakes import PERIOD_NS, FakeClock, FakePort
 
 from tcs_hil.canbus.port import Frame
 from tcs_hil.runtime.frame_trigger import FrameTrigger

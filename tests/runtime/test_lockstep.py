@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.runtime.fakes import PERIOD_NS, FakeBench, FakeClock, FakePort
+from runtime.fakes import PERIOD_NS, FakeBench, FakeClock, FakePort
 
 from tcs_hil.canbus.port import Frame
 from tcs_hil.runtime.lockstep import LockstepTrigger

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from tests.runtime.fakes import PERIOD_NS, FakeClock, FakePort
+from runtime.fakes import PERIOD_NS, FakeClock, FakePort
 
 from tcs_hil.canbus.port import Frame
 from tcs_hil.runtime.trigger import Grid, TimerTrigger

@@ -1,0 +1,43 @@
+"""From a controller's kind to a controller: the only place that knows them all."""
+
+from __future__ import annotations
+
+from tcs_hil.control.off import OffController
+from tcs_hil.control.pi import PiController
+from tcs_hil.control.protocol import Controller
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.errors import ConfigError
+from tcs_hil.model.predictor import KoopmanPredictor
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import ControllerKind
+
+
+def make_controller(
+    kind: ControllerKind,
+    settings: ControlSettings,
+    vehicle: Vehicle,
+    predictor: KoopmanPredictor | None = None,
+) -> Controller:
+    """One wheel's controller; only the Koopman MPC needs the predictor.
+
+    Solvers are imported where they are used: a service that runs the PI loads
+    neither OSQP nor CasADi.  Raises ConfigError for a predictor that is missing
+    or made for another period.
+    """
+    if kind is ControllerKind.OFF:
+        return OffController()
+    if kind is ControllerKind.PI:
+        return PiController(settings)
+    if kind is ControllerKind.NMPC:
+        from tcs_hil.control.nmpc import nonlinear_mpc  # noqa: PLC0415
+
+        return nonlinear_mpc(settings, vehicle)
+    return _koopman(settings, predictor)
+
+
+def _koopman(settings: ControlSettings, predictor: KoopmanPredictor | None) -> Controller:
+    from tcs_hil.control.kmpc import koopman_mpc  # noqa: PLC0415
+
+    if predictor is None:
+        raise ConfigError("controller KMPC needs a model file")
+    return koopman_mpc(settings, predictor)

@@ -1,0 +1,49 @@
+"""The nonlinear MPC: the paper's optimal control problem solved to convergence every tick."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tcs_hil.control.integrator import SlipErrorIntegral
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.predictive import PredictiveController
+from tcs_hil.control.protocol import WheelState
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.control.sqp import minimise
+from tcs_hil.control.transcription import Linearisation
+from tcs_hil.model.vehicle import Vehicle
+
+
+class NonlinearOptimiser:
+    """Eq. (opt_NMPC) by Gauss-Newton SQP, warm from the last plan.
+
+    The last plan is not shifted: between two ticks the optimum moves less than
+    its own elements differ from one another, and the unshifted plan saves every
+    second linearisation.
+    """
+
+    def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
+        self._problem = Linearisation(settings, vehicle)
+        self._max_iterations = settings.nmpc.max_iterations
+        self._guess = np.zeros(settings.nmpc.horizon)  # (N,), Nm
+
+    def plan(self, wheel: WheelState, integral_s: float, torque_ref_nm: float) -> Plan:
+        """Best torques (N,) in Nm within [0, torque_ref_nm]."""
+        state = (wheel.slip_speed_mps, wheel.wheel_speed_radps, integral_s)
+        self._problem.start_from(state, torque_ref_nm)
+        feasible = np.minimum(self._guess, torque_ref_nm)
+        plan = minimise(self._problem, feasible, torque_ref_nm, self._max_iterations)
+        self._guess = np.maximum(plan.inputs, 0.0)
+        return plan
+
+    def reset(self) -> None:
+        """Forget the last plan."""
+        self._guess[:] = 0.0
+
+
+def nonlinear_mpc(settings: ControlSettings, vehicle: Vehicle) -> PredictiveController:
+    """One wheel's NMPC; the first call builds CasADi's function."""
+    return PredictiveController(
+        NonlinearOptimiser(settings, vehicle),
+        SlipErrorIntegral(settings.slip_reference, settings.period_s),
+    )

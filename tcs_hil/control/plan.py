@@ -1,0 +1,23 @@
+"""What an optimiser hands back: the whole input sequence and how it came about."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tcs_hil.control.protocol import SolveStatus
+
+FloatArray = NDArray[np.float64]
+
+
+class Plan(NamedTuple):
+    """Inputs u_0..u_{N-1}; to be trusted unless the status is ``FAILED``.
+
+    After ``MAX_ITERATIONS`` they lie in the box and are the best so far.
+    """
+
+    inputs: FloatArray  # (N,)
+    status: SolveStatus
+    iterations: int

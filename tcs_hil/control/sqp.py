@@ -1,0 +1,81 @@
+"""Gauss-Newton SQP over a box: exact box QPs (daqp) and a backtracking line search."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+import daqp
+import numpy as np
+from numpy.typing import NDArray
+
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.protocol import SolveStatus
+
+FloatArray = NDArray[np.float64]
+
+STEP_TOLERANCE_NM = 1e-3
+"""A step this small is taken and ends the iteration.
+
+Each iteration shrinks the error a hundredfold or better (the residuals at the
+solution are small), so what is left is about 1e-5 Nm.
+"""
+
+ARMIJO = 1e-4
+STEP_LENGTHS = tuple(0.5**k for k in range(16))
+ROUNDING = 1e-12
+"""Relative change of the cost that means nothing: sums of squares lose that much."""
+
+
+class LeastSquares(Protocol):
+    """A sum of squares with its Gauss-Newton model at the last plan asked for."""
+
+    gradient: FloatArray  # (N,)
+    hessian: FloatArray  # (N, N), positive definite
+
+    def at(self, plan: FloatArray) -> float:
+        """Cost of a plan (N,)."""
+        ...
+
+
+def minimise(
+    problem: LeastSquares, plan: FloatArray, ceiling_nm: float, max_iterations: int
+) -> Plan:
+    """Minimise over 0 <= plan <= ceiling_nm from a feasible plan (N,).  Nothing is raised."""
+    cost = problem.at(plan)
+    for iteration in range(1, max_iterations + 1):
+        step = _box_step(problem, plan, ceiling_nm) if math.isfinite(cost) else None
+        if step is None:
+            return Plan(plan, SolveStatus.FAILED, iteration)
+        if max(step.max(), -step.min()) <= STEP_TOLERANCE_NM:
+            return Plan(plan + step, SolveStatus.OK, iteration)
+        plan, cost = _search(problem, plan, cost, step)
+    return Plan(plan, SolveStatus.MAX_ITERATIONS, max_iterations)
+
+
+def _box_step(problem: LeastSquares, plan: FloatArray, ceiling_nm: float) -> FloatArray | None:
+    """Minimiser of the quadratic model within the box, as a step (N,); None if daqp gives up."""
+    n = len(plan)
+    step, _, exit_flag, _ = daqp.solve(
+        problem.hessian,
+        problem.gradient,
+        np.empty((0, n)),
+        ceiling_nm - plan,
+        -plan,
+        np.zeros(n, dtype=np.int32),
+    )
+    return step if exit_flag > 0 else None
+
+
+def _search(
+    problem: LeastSquares, plan: FloatArray, cost: float, step: FloatArray
+) -> tuple[FloatArray, float]:
+    """Go along the step until the cost falls enough (Armijo); the model follows the plan."""
+    slope = ARMIJO * float(problem.gradient @ step)
+    slack = ROUNDING * cost
+    for length in STEP_LENGTHS:
+        trial = plan + length * step
+        trial_cost = problem.at(trial)
+        if trial_cost <= cost + length * slope + slack:
+            break
+    return trial, trial_cost

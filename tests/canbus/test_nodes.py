@@ -1,0 +1,220 @@
+"""Service and vehicle as nodes: what they keep, what they count, when they speak."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tcs_hil.canbus.database import load_database
+from tcs_hil.canbus.inbox import InboxCounters
+from tcs_hil.canbus.tcs_node import TcsNode
+from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
+from tcs_hil.signals import NO_LIMIT, Command, ControllerKind, TcsState, TorqueLimits
+
+DATABASE = load_database()
+MS = 1_000_000
+TORQUE_LIMIT, DRIVER, MOTOR, FRONT, REAR, STATUS = 0x90, 0x98, 0xA0, 0xA1, 0xA2, 0x300
+
+SIGNALS = VehicleSignals(
+    wheel_speed_radps=(10.0, 11.0, 9.0, 9.5),
+    wheel_speed_valid=(True, True, True, False),
+    motor_speed_radps=(30.0, 33.0),
+    motor_torque_nm=(100.0, 120.0),
+    driver_torque_nm=(200.0, 210.0),
+    accel_x_mps2=1.25,
+)
+COMMAND = Command(
+    limits=TorqueLimits(150.0, NO_LIMIT),
+    active=(True, False),
+    state=TcsState.ACTIVE,
+    fault_code=0,
+    controller=ControllerKind.NMPC,
+    slip_ratio=(0.1, 0.02),
+    slip_reference=0.1,
+)
+
+
+@pytest.fixture
+def service():
+    return TcsNode(DATABASE)
+
+
+@pytest.fixture
+def vehicle():
+    return VehicleNode(DATABASE)
+
+
+def ids(frames):
+    return [frame_id for frame_id, _ in frames]
+
+
+def hand_over(frames, node, stamp_ns=0):
+    return [node.feed(frame_id, data, stamp_ns) for frame_id, data in frames]
+
+
+def test_before_the_first_frame_everything_is_invalid_and_infinitely_old(service):
+    seen = service.measurement(0)
+    assert seen.wheel_speed_valid == (False, False, False, False)
+    assert math.isnan(seen.accel_x_mps2)
+    ages = {seen.front_speed_age_s, seen.rear_speed_age_s, seen.motor_age_s, seen.driver_age_s}
+    assert ages == {math.inf}
+    assert service.newest_wheel_stamp_ns is None
+
+
+def test_what_the_vehicle_sends_the_service_measures(service, vehicle):
+    assert all(hand_over(vehicle.frames(SIGNALS, 0), service))
+    seen = service.measurement(0)
+    assert seen.wheel_speed_radps == pytest.approx(SIGNALS.wheel_speed_radps, abs=0.005)
+    assert seen.wheel_speed_valid == SIGNALS.wheel_speed_valid
+    assert seen.motor_speed_radps == pytest.approx(SIGNALS.motor_speed_radps, abs=0.025)
+    assert seen.motor_torque_nm == pytest.approx(SIGNALS.motor_torque_nm, abs=0.125)
+    assert seen.driver_torque_nm == pytest.approx(SIGNALS.driver_torque_nm, abs=0.0625)
+    assert seen.accel_x_mps2 == pytest.approx(1.25, abs=0.0005)
+
+
+def test_a_car_without_accelerometer_measures_nan(service, vehicle):
+    hand_over(vehicle.frames(replace(SIGNALS, accel_x_mps2=None), 0), service)
+    assert math.isnan(service.measurement(0).accel_x_mps2)
+
+
+def test_each_source_has_its_own_age(service, vehicle):
+    frames = dict(vehicle.frames(SIGNALS, 0))
+    for stamp_ms, frame_id in enumerate((DRIVER, MOTOR, FRONT, REAR)):
+        service.feed(frame_id, frames[frame_id], stamp_ms * MS)
+    seen = service.measurement(10 * MS)
+    assert seen.driver_age_s == pytest.approx(0.010)
+    assert seen.motor_age_s == pytest.approx(0.009)
+    assert seen.front_speed_age_s == pytest.approx(0.008)
+    assert seen.rear_speed_age_s == pytest.approx(0.007)
+    assert service.newest_wheel_stamp_ns == 3 * MS
+
+
+def test_a_frame_stamped_after_the_tick_is_of_age_zero(service, vehicle):
+    hand_over(vehicle.frames(SIGNALS, 0), service, stamp_ns=5)
+    assert service.measurement(0).motor_age_s == 0.0
+
+
+def test_every_bad_frame_is_counted_by_its_kind(service, vehicle):
+    front = dict(vehicle.frames(SIGNALS, 0))[FRONT]
+    assert service.feed(FRONT, front, 0)
+    for frame_id, data in [
+        (0x123, b""),
+        (FRONT, front[:-1]),
+        (FRONT, bytes(6)),
+        (FRONT, front),
+        (TORQUE_LIMIT, bytes(6)),
+    ]:
+        assert not service.feed(frame_id, data, 0)
+    for tick in range(1, 13):
+        late = dict(vehicle.frames(SIGNALS, tick * 10 * MS))[FRONT]
+    assert not service.feed(FRONT, late, 0)
+    assert service.counters == InboxCounters(
+        good=1,
+        unknown_id=1,
+        wrong_length=1,
+        e2e_error=1,
+        repeated=1,
+        wrong_sequence=1,
+        own_id=1,
+    )
+
+
+def test_a_bad_frame_changes_neither_value_nor_age(service, vehicle):
+    hand_over(vehicle.frames(SIGNALS, 0), service)
+    before = service.measurement(MS)
+    assert not service.feed(FRONT, b"\xff" * 6, MS)
+    assert service.measurement(MS) == before
+
+
+@given(st.integers(0, 0x7FF), st.binary(max_size=8))
+def test_no_frame_on_earth_makes_a_node_raise(frame_id, data):
+    for node in (TcsNode(DATABASE), VehicleNode(DATABASE)):
+        node.feed(frame_id, data, 0)
+        assert sum(vars_of(node.counters)) == 1
+
+
+def vars_of(counters):
+    return [getattr(counters, name) for name in counters.__slots__]
+
+
+def test_the_torque_limits_go_out_every_tick_and_last(service):
+    sent = [ids(service.frames(COMMAND, tick * 2 * MS)) for tick in range(21)]
+    assert {tuple(frames) for frames in sent} == {(TORQUE_LIMIT,), (STATUS, TORQUE_LIMIT)}
+    assert [tick for tick, frames in enumerate(sent) if STATUS in frames] == [0, 10, 20]
+
+
+def test_the_vehicle_sends_on_its_cycles_in_ascending_order(vehicle):
+    sent = [ids(vehicle.frames(SIGNALS, tick * 2 * MS)) for tick in range(6)]
+    assert sent[0] == sent[5] == [DRIVER, MOTOR, FRONT, REAR]
+    assert sent[1:5] == [[MOTOR, FRONT, REAR]] * 4
+
+
+def test_jitter_of_the_sender_costs_no_cycle(vehicle):
+    vehicle.frames(SIGNALS, 0)
+    for tick, jitter_ns in enumerate((-400_000, 300_000, -499_999, 0), start=1):
+        assert REAR in ids(vehicle.frames(SIGNALS, tick * 2 * MS + jitter_ns))
+
+
+def test_between_two_cycles_nothing_is_sent(vehicle):
+    vehicle.frames(SIGNALS, 0)
+    assert vehicle.frames(SIGNALS, MS) == []
+
+
+def test_after_a_pause_one_frame_is_sent_and_no_burst(vehicle):
+    vehicle.frames(SIGNALS, 0)
+    assert REAR in ids(vehicle.frames(SIGNALS, 100 * MS))
+    assert vehicle.frames(SIGNALS, 101 * MS) == []
+    assert REAR in ids(vehicle.frames(SIGNALS, 102 * MS))
+
+
+def limits_through_the_bus(limits):
+    service, vehicle = TcsNode(DATABASE), VehicleNode(DATABASE)
+    hand_over(service.frames(replace(COMMAND, limits=limits), 0), vehicle, stamp_ns=7)
+    assert vehicle.limits_stamp_ns == 7
+    return vehicle.limits
+
+
+@given(st.floats(0.0, 819.0), st.floats(0.0, 819.0))
+def test_a_finite_limit_arrives_within_half_a_step(left_nm, right_nm):
+    arrived = limits_through_the_bus(TorqueLimits(left_nm, right_nm))
+    assert arrived == pytest.approx((left_nm, right_nm), abs=0.0250001)
+
+
+def test_no_limit_arrives_as_no_limit():
+    assert limits_through_the_bus(TorqueLimits(NO_LIMIT, 0.0)) == TorqueLimits(NO_LIMIT, 0.0)
+
+
+def test_a_finite_limit_never_turns_into_no_limit():
+    arrived = limits_through_the_bus(TorqueLimits(1e9, 819.15))
+    assert arrived == pytest.approx((819.1, 819.1))
+
+
+def test_a_limit_that_is_not_a_number_holds_nothing_back():
+    assert limits_through_the_bus(TorqueLimits(math.nan, 10.0)).left_nm == NO_LIMIT
+
+
+def test_before_the_service_speaks_nothing_is_limited(vehicle):
+    assert vehicle.limits == TorqueLimits(NO_LIMIT, NO_LIMIT)
+    assert vehicle.limits_stamp_ns is None
+    assert vehicle.service.state is TcsState.OFF
+
+
+def test_a_state_outside_of_the_value_table_reads_as_fault(service, vehicle):
+    hand_over(service.frames(replace(COMMAND, state=TcsState.OFF), 0), vehicle)
+    status = DATABASE.messages["TcsStatus"]
+    beyond = bytearray(status.codec.encode(0.0, 0.0, 0.0, 0, 0, 0))
+    beyond[4] |= 7 << 2  # TcsController at bit 34
+    assert vehicle.feed(STATUS, bytes(beyond), 0)
+    assert vehicle.service.controller is ControllerKind.OFF
+
+
+def test_bench_ticks_pass_in_both_directions(service, vehicle):
+    assert (service.bench_tick, vehicle.bench_tick_done) == (None, None)
+    assert service.feed(*vehicle.bench_tick(41), 0)
+    assert service.bench_tick == 41
+    assert vehicle.feed(*service.bench_tick_done(41), 0)
+    assert vehicle.bench_tick_done == 41

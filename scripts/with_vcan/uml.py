@@ -74,7 +74,7 @@ def _kernel_arguments(folder: Path, wishes: Wishes, line: int, log: int) -> list
         "rootflags=/",
         "ro",
         f"mem={_MEMORY_BYTES >> 20}M",
-        f"uml_dir={folder}/",
+        "uml_dir=./",
         "umid=guest",
         f"con0=null,fd:{log}",
         f"con1=fd:{line},fd:{line}",
@@ -88,7 +88,7 @@ def _kernel_arguments(folder: Path, wishes: Wishes, line: int, log: int) -> list
         arguments += ["time-travel=inf-cpu", f"time-travel-start={_SIMULATED_START_NS}"]
     # What follows `--` goes to init; quotes keep a path with blanks together.
     python = os.path.realpath(sys.executable)
-    init = f'init="{python}"', "--", "-ESs", f'"{_SCRIPTS / "guest_init.py"}"', str(folder)
+    init = f'init="{python}"', "--", "-ESs", f'"{_SCRIPTS / "guest_init.py"}"', f'"{folder}"'
     return [*arguments, *init]
 
 

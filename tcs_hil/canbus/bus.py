@@ -31,26 +31,21 @@ def open_bus(
     Raises:
         BusError: The interface is unknown, missing or cannot be opened.
     """
-    if interface == "auto":
-        interface, reason = _choose(channel)
-    else:
-        reason = ""
-    return _open(interface, channel, bitrate), f"{interface} {channel}{reason}"
-
-
-def _choose(channel: str) -> tuple[str, str]:
+    if interface not in ("auto", "socketcan"):
+        return _open(interface, channel, bitrate), f"{interface} {channel}"
     if _is_can_interface(channel):
-        return "socketcan", ""
-    if channel.startswith("vcan"):
-        return "embedded", f" (no SocketCAN interface {channel} in this kernel)"
-    raise BusError(f"there is no CAN interface {channel}; {_remedy(channel)}")
+        return _open("socketcan", channel, bitrate), f"socketcan {channel}"
+    if interface == "auto" and channel.startswith("vcan"):
+        reason = f"this kernel has no SocketCAN {channel}"
+        return _open("embedded", channel, bitrate), f"embedded {channel} ({reason})"
+    raise BusError(f"there is no CAN interface {channel} in this kernel; {_remedy(channel)}")
 
 
 def _is_can_interface(name: str) -> bool:
     try:
-        socket.if_nametoindex(name)
-        socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW).close()
-    except (OSError, AttributeError):
+        with socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as probe:
+            probe.bind((name,))
+    except OSError:
         return False
     return True
 
@@ -62,8 +57,7 @@ def _open(interface: str, channel: str, bitrate: int | None) -> can.BusABC:
             return EmbeddedBus(channel, **options)
         bus = can.Bus(channel=channel, interface=interface, **options)
     except (can.CanError, NotImplementedError, OSError, ValueError, TypeError) as error:
-        remedy = f"; {_remedy(channel)}" if interface == "socketcan" else ""
-        raise BusError(f"cannot open {interface} {channel}: {error}{remedy}") from error
+        raise BusError(f"cannot open {interface} {channel}: {error}") from error
     if isinstance(bus, SocketcanBus):
         _enlarge_receive_buffer(bus.socket)
     return bus

@@ -82,9 +82,7 @@ def _read(source: str, path: Path | None) -> str:
 
 def _parse(source: str, text: str) -> CanDatabase:
     try:
-        parsed = cantools.database.load_string(
-            text, database_format="dbc", prune_choices=False
-        )
+        parsed = cantools.database.load_string(text, database_format="dbc", prune_choices=False)
     except UnsupportedDatabaseFormatError as error:
         sentence = " ".join(str(error.e_dbc).split())
         raise DatabaseError(f"{source} is not a valid DBC: {sentence}") from error

@@ -38,8 +38,8 @@ class KoopmanOptimiser:
         xi = np.concatenate((z, (integral_s, self._slip_reference)))  # (nz + 2,)
         torque_ref = self._predictor.scale_input(torque_ref_nm)
         gradient = self._gradient_map @ xi - self._reduction_pull * torque_ref  # (N,)
-        scaled = self._qp.solve(gradient, self._zero_torque, torque_ref)
-        return scaled._replace(inputs=self._in_nm(scaled.inputs))
+        inputs, status, iterations = self._qp.solve(gradient, self._zero_torque, torque_ref)
+        return Plan(self._in_nm(inputs), status, iterations)
 
     def reset(self) -> None:
         """Forget the last plan."""

@@ -23,8 +23,10 @@ class PiSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class KmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Koopman MPC.  The weights belong to the predictor's scaling: kappa and e_int
-    physical, torque in standard deviations of the data set.
+    """Koopman MPC, weighted in the predictor's units.
+
+    Those are physical for kappa and e_int, and standard deviations of the data
+    set for the torque.
     """
 
     horizon: Horizon = 5
@@ -34,7 +36,7 @@ class KmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class NmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Nonlinear MPC.  The weights belong to physical units: kappa, seconds and Nm."""
+    """Nonlinear MPC, weighted in physical units: kappa, seconds and Nm."""
 
     horizon: Horizon = 5
     weight_slip: Weight = 1e3

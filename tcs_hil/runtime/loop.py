@@ -39,11 +39,7 @@ class Loop:
     failures: int = field(default=0, init=False)
 
     def run(self, stop_requested: Callable[[], bool]) -> None:
-        """Tick until asked to stop.
-
-        Raises:
-            BusError: the interface has been lost for good.
-        """
+        """Tick until asked to stop.  A lost interface is the port's to count and to reopen."""
         while not stop_requested():
             tick = self.trigger.wait()
             if tick is not None:

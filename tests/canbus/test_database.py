@@ -60,7 +60,7 @@ REFUSED = {
     ),
     "the comment is missing": (
         'CM_ SG_ 768 SlipL "Estimated slip ratio of the front left wheel, '
-        'saturated to the signal\'s range";',
+        "saturated to the signal's range\";",
         "",
         "signal SlipL of message TcsStatus has no comment",
     ),

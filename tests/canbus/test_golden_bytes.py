@@ -125,9 +125,7 @@ def test_the_vehicle_reads_the_golden_bytes():
     assert status.tick_overruns == 513
 
 
-@pytest.mark.parametrize(
-    ("tick", "payload"), [(1, "01 00 00 00"), (0x12345678, "78 56 34 12")]
-)
+@pytest.mark.parametrize(("tick", "payload"), [(1, "01 00 00 00"), (0x12345678, "78 56 34 12")])
 def test_the_bench_ticks_are_plain_numbers_on_the_wire(tick, payload):
     vehicle, service = VehicleNode(load_database()), TcsNode(load_database())
     assert vehicle.bench_tick(tick) == (0x7F0, bytes.fromhex(payload))

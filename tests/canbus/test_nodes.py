@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tcs_hil.canbus.database import load_database
+from tcs_hil.canbus.e2e import Protector
 from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
@@ -203,12 +204,16 @@ def test_before_the_service_speaks_nothing_is_limited(vehicle):
     assert vehicle.service.state is TcsState.OFF
 
 
-def test_a_state_outside_of_the_value_table_reads_as_fault(service, vehicle):
-    hand_over(service.frames(replace(COMMAND, state=TcsState.OFF), 0), vehicle)
-    status = DATABASE.messages["TcsStatus"]
-    beyond = bytearray(status.codec.encode(0.0, 0.0, 0.0, 0, 0, 0))
-    beyond[4] |= 7 << 2  # TcsController at bit 34
-    assert vehicle.feed(STATUS, bytes(beyond), 0)
+def test_numbers_outside_of_the_value_tables_read_as_fault_and_off(vehicle):
+    limit, status = DATABASE.messages["TorqueLimit"], DATABASE.messages["TcsStatus"]
+    payload = limit.codec.encode(0.0, 0.0, False, False, TcsState.ACTIVE)
+    payload[5] |= 7 << 4  # TcsState at bit 44
+    Protector(limit.e2e).protect(payload)
+    assert vehicle.feed(TORQUE_LIMIT, bytes(payload), 0)
+    payload = status.codec.encode(0.0, 0.0, 0.0, ControllerKind.NMPC, 0, 0)
+    payload[4] |= 7 << 2  # TcsController at bit 34
+    assert vehicle.feed(STATUS, bytes(payload), 0)
+    assert vehicle.service.state is TcsState.FAULT
     assert vehicle.service.controller is ControllerKind.OFF
 
 

@@ -71,10 +71,10 @@ def ipopt() -> Solve:
     problem = {
         "x": ca.vertcat(ca.vec(states), torques),
         "p": ca.vertcat(start, request),
-        "f": cost / W_U,  # IPOPT's tolerance is absolute
+        "f": cost / W_U,  # in Nm², so that IPOPT's absolute tolerance means something
         "g": ca.vertcat(*gaps),
     }
-    quiet = {"print_level": 0, "sb": "yes", "tol": 1e-11, "bound_relax_factor": 0.0}
+    quiet = {"print_level": 0, "sb": "yes", "tol": 1e-8, "bound_relax_factor": 0.0}
     solver = ca.nlpsol("reference", "ipopt", problem, {"ipopt": quiet, "print_time": False})
 
     def solve(x0: tuple[float, float, float], torque_ref_nm: float) -> np.ndarray:

@@ -10,7 +10,15 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4, rk4_step, slip_dynamics, slip_ratio, tyre_force_n
+from tcs_hil.model.wheel import (
+    fastest_pole_per_s,
+    rk4,
+    rk4_step,
+    slip_dynamics,
+    slip_ratio,
+    stable_substeps,
+    tyre_force_n,
+)
 
 VEHICLE = Vehicle()
 PERIOD_S = 0.002
@@ -82,6 +90,25 @@ def test_four_substeps_do_not_chatter_at_low_speed_where_one_does():
     # The wheel has settled after 0.1 s: what still moves s is the integrator.
     assert chatter_mps(4) < 1e-3
     assert chatter_mps(1) > 2e-2
+
+
+def test_a_grippier_road_gets_the_finer_steps_it_needs():
+    asphalt = Vehicle(friction_ratio=1.0)
+    assert stable_substeps(VEHICLE, PERIOD_S) == 4
+    assert stable_substeps(asphalt, PERIOD_S) == 11
+    assert stable_substeps(asphalt, PERIOD_S / 100) == 4
+
+
+def test_the_fastest_pole_is_that_of_the_linearised_dynamics():
+    rim = np.linspace(0.01, 10.0, 2000)
+    delta = 1e-6
+    # s deviates at a given vehicle speed, so omega deviates with it.
+    ahead, behind = (
+        slip_dynamics(d, (rim + d) / VEHICLE.wheel_radius_m, 0.0, VEHICLE)[0]
+        for d in (delta, -delta)
+    )
+    pole = (ahead - behind) / (2 * delta)
+    assert fastest_pole_per_s(VEHICLE) == pytest.approx(-pole.min(), rel=1e-3)
 
 
 def test_many_wheels_move_as_each_would_alone():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from runtime.fakes import PERIOD_NS, FakeClock, FakePort
 
 from tcs_hil.canbus.port import Frame
@@ -74,3 +75,25 @@ def test_after_a_stall_on_a_silent_bus_the_missed_ticks_are_counted() -> None:
     late, following = trigger.wait(), trigger.wait()
     assert (late.skipped, late.scheduled_ns) == (4, 5 * PERIOD_NS)
     assert following.wake_ns - late.wake_ns == PERIOD_NS
+
+
+class BabblingPort(FakePort):
+    """A bus on which another node never stops talking."""
+
+    patience = 100
+
+    def wait(self, timeout_s: float) -> bool:
+        self.patience -= 1
+        if not self.patience:
+            pytest.fail("the babble stopped the tick")
+        self._clock.work(min(round(timeout_s * 1e9), PERIOD_NS // 10))
+        return True
+
+    def receive(self) -> list[Frame]:
+        return [Frame(DRIVER, b"babble", self._clock.now_ns())]
+
+
+def test_a_babbling_node_does_not_stop_the_ticks() -> None:
+    clock = FakeClock()
+    trigger = FrameTrigger(clock, BabblingPort(clock), REAR, PERIOD_NS)
+    assert in_periods([trigger.wait(), trigger.wait()]) == [1.5, 2.5]

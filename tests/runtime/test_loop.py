@@ -231,6 +231,7 @@ def test_timing_a_law_changes_nothing_else() -> None:
     law = Law(clock, 5)
     timed = TimedController(law, clock)
     assert timed.step(WHEEL, 12.0) == Proposal(12.0)
+    assert timed.step(WHEEL, 13.0) == Proposal(13.0)
     timed.reset()
     assert law.resets == 1
-    assert (timed.lap_ns(), timed.lap_ns()) == (5, 0)
+    assert (timed.lap_ns(), timed.lap_ns()) == (10, 0)

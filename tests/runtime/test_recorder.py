@@ -95,6 +95,11 @@ def test_latency_in_lockstep_adds_bench_time_and_computing_time() -> None:
     assert latency_ns == 2_000 + 80_000
 
 
+def test_a_tick_that_ends_on_its_deadline_is_no_overrun() -> None:
+    assert not made_pass(sent_us=PERIOD_NS // 1000).overrun
+    assert made_pass(sent_us=PERIOD_NS // 1000 + 1).overrun
+
+
 def test_there_is_no_latency_before_the_first_wheel_speeds() -> None:
     assert numbered(0)[list(FIELDS).index("latency_ns")] == NO_LATENCY
 

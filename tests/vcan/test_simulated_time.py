@@ -15,8 +15,6 @@ from .conftest import CHANNEL, Candump
 TICKS = 200
 PERIOD_NS = 2_000_000
 SETTLING_NS = 20_000_000  # the first sleep after long computing ends on the guest's 10 ms tick
-    20_000_000  # the guest's first sleep after long computing lasts to its next 10 ms tick
-)
 ROUNDING_US = 1  # candump writes whole microseconds
 
 pytestmark = pytest.mark.simulated_time

@@ -1,0 +1,71 @@
+"""The demo's one table, as text for the screen and the page alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+from tcs_hil.hil.demo import Outcome
+from tcs_hil.hil.paper import SOLVE_TIMES
+from tcs_hil.runtime.summary import Percentiles
+
+
+def _slip(value: float) -> str:
+    return f"{value:.4f}"
+
+
+def _law(outcome: Outcome) -> str:
+    solve = outcome.timing.solve
+    return "-" if solve is None else f"{solve.mean_us:.1f} / {solve.max_us:.0f}"
+
+
+def _paper(outcome: Outcome) -> str:
+    reported = SOLVE_TIMES.get((outcome.manoeuvre, outcome.controller))
+    return "-" if reported is None else f"{reported.mean_us:g} / {reported.max_us:g}"
+
+
+def _in_real_time(times: Callable[[Outcome], Percentiles | None]) -> Callable[[Outcome], str]:
+    """Percentiles that mean something only where a clock, not the bench, sets the pace."""
+
+    def text(outcome: Outcome) -> str:
+        found = times(outcome) if outcome.mode == "realtime" else None
+        if found is None:
+            return "-"
+        return " / ".join(
+            f"{value:.0f}" for value in (found.p50_us, found.p99_us, found.p99_9_us, found.max_us)
+        )
+
+    return text
+
+
+COLUMNS: dict[str, Callable[[Outcome], str]] = {
+    "manoeuvre": lambda o: o.manoeuvre,
+    "controller": lambda o: o.controller.upper(),
+    "pace": lambda o: "real time" if o.mode == "realtime" else "lockstep",
+    "slip RMSE": lambda o: _slip(o.slip.rmse_ratio),
+    "peak slip": lambda o: _slip(o.slip.peak_ratio),
+    "final km/h": lambda o: f"{o.slip.final_speed_mps * 3.6:.1f}",
+    "mean |dT/dt| Nm/s": lambda o: f"{o.slip.chatter_nmps:.0f}",
+    "law mean / max µs": _law,
+    "paper's mean / max µs": _paper,
+    "latency p50 / p99 / p99.9 / max µs": _in_real_time(lambda o: o.timing.latency),
+    "jitter p50 / p99 / p99.9 / max µs": _in_real_time(lambda o: o.timing.wake_jitter),
+    "overruns": lambda o: str(o.timing.overruns) if o.mode == "realtime" else "-",
+}
+
+
+def row(outcome: Outcome) -> list[str]:
+    """One run's cells, in the order of ``COLUMNS``."""
+    return [text(outcome) for text in COLUMNS.values()]
+
+
+def as_dict(outcome: Outcome) -> dict[str, Any]:
+    """One run's figures as numbers, for JSON."""
+    return {
+        "manoeuvre": outcome.manoeuvre,
+        "controller": outcome.controller,
+        "pace": outcome.mode,
+        "slip": asdict(outcome.slip),
+        "timing": outcome.timing.as_dict(),
+    }

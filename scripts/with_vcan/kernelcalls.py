@@ -9,6 +9,7 @@ from pathlib import Path
 CLONE_NEWUSER = 0x1000_0000
 CLONE_NEWNET = 0x4000_0000
 
+_MS_MOVE = 0x2000
 _POWER_OFF = 0x4321_FEDC
 _FINIT_MODULE = 313  # x86-64, the only machine User-Mode Linux is built for here
 
@@ -25,6 +26,17 @@ def mount(source: str, target: str, kind: str, options: str = "") -> None:
     """Mount a file system; raises OSError that names both ends."""
     arguments = (source.encode(), target.encode(), kind.encode(), 0, options.encode())
     _check(_libc.mount(*arguments), f"mount {kind} {source} on {target}")
+
+
+def make_root(folder: Path) -> None:
+    """Put the file system mounted on the folder in the place of `/`; raises OSError.
+
+    A mere chroot would forbid what runs inside to make user namespaces.
+    """
+    os.chdir(folder)
+    _check(_libc.mount(b".", b"/", None, _MS_MOVE, None), f"move {folder} to /")
+    os.chroot(".")
+    os.chdir("/")
 
 
 def unshare(flags: int) -> None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
-from .kernelcalls import load_module, mount
+from .kernelcalls import load_module, make_root, mount
 
 SHARED = Path("/run/with-vcan")  # where the guest sees the folder it shares with the host
 
@@ -39,8 +38,7 @@ def switch(shared: Path, writable: list[str]) -> None:
         mount("hostfs", f"{root}{host_folder}", "hostfs", host_folder)
     (root / SHARED.relative_to("/")).mkdir()
     mount("hostfs", f"{root}{SHARED}", "hostfs", str(shared))
-    os.chroot(root)
-    os.chdir("/")
+    make_root(root)
     for name, number in _STANDARD_STREAMS.items():
         Path("/dev", name).symlink_to(f"/proc/self/fd{number}")
 

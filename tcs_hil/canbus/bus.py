@@ -31,13 +31,22 @@ def open_bus(
     Raises:
         BusError: The interface is unknown, missing or cannot be opened.
     """
+    chosen, description = choose_interface(interface, channel)
+    return _open(chosen, channel, bitrate), description
+
+
+def choose_interface(interface: str, channel: str) -> tuple[str, str]:
+    """Settle which python-can interface ``open_bus`` takes, and the line that says so.
+
+    Raises:
+        BusError: The kernel has no such CAN interface and nothing may replace it.
+    """
     if interface not in ("auto", "socketcan"):
-        return _open(interface, channel, bitrate), f"{interface} {channel}"
+        return interface, f"{interface} {channel}"
     if _is_can_interface(channel):
-        return _open("socketcan", channel, bitrate), f"socketcan {channel}"
+        return "socketcan", f"socketcan {channel}"
     if interface == "auto" and channel.startswith("vcan"):
-        reason = f"this kernel has no SocketCAN {channel}"
-        return _open("embedded", channel, bitrate), f"embedded {channel} ({reason})"
+        return "embedded", f"embedded {channel} (this kernel has no SocketCAN {channel})"
     raise BusError(f"there is no CAN interface {channel} in this kernel; {_remedy(channel)}")
 
 

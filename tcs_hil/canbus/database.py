@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import cantools
-from cantools.database import UnsupportedDatabaseFormatError
 from cantools.database.can import Database as CanDatabase
 from cantools.database.can import Message, Signal
+from cantools.database.errors import UnsupportedDatabaseFormatError
 
 from tcs_hil.canbus.codec import Codec, SignalSpec, compile_codec
 from tcs_hil.canbus.contract import CONTRACT, MessageContract

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import can
 
+from tcs_hil.canbus.bus import choose_interface, open_bus
 from tcs_hil.canbus.stamps import stamps_for
 from tcs_hil.errors import BusError
 
@@ -45,6 +46,29 @@ class PortCounters:
     rx_errors: int = 0
     tx_errors: int = 0
     reopened: int = 0
+
+
+def open_port(
+    interface: str = "auto",
+    channel: str = "vcan0",
+    bitrate: int | None = None,
+    *,
+    send_timeout_s: float = 0.0,
+) -> tuple[CanPort, str]:
+    """Open a port as ``open_bus`` opens a bus; it finds its interface again after a removal.
+
+    What ``auto`` chose stays chosen: a port never moves to another kind of bus.
+
+    Raises:
+        BusError: The interface is unknown, missing or cannot be opened.
+    """
+    chosen, description = choose_interface(interface, channel)
+
+    def open_chosen() -> can.BusABC:
+        return open_bus(chosen, channel, bitrate)[0]
+
+    port = CanPort(open_chosen(), reopen=open_chosen, send_timeout_s=send_timeout_s)
+    return port, description
 
 
 class CanPort:

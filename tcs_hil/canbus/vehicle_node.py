@@ -42,6 +42,38 @@ class ServiceStatus:
     tick_overruns: int
 
 
+_Values: TypeAlias = tuple[float, ...]
+
+
+def _driver_request(signals: VehicleSignals) -> _Values:
+    return signals.driver_torque_nm
+
+
+def _motor_state(signals: VehicleSignals) -> _Values:
+    return *signals.motor_speed_radps, *signals.motor_torque_nm
+
+
+def _wheel_speeds_front(signals: VehicleSignals) -> _Values:
+    return *signals.wheel_speed_radps[:2], *signals.wheel_speed_valid[:2]
+
+
+def _wheel_speeds_rear(signals: VehicleSignals) -> _Values:
+    accel = signals.accel_x_mps2
+    return (
+        *signals.wheel_speed_radps[2:],
+        *signals.wheel_speed_valid[2:],
+        0.0 if accel is None else accel,
+        accel is not None,
+    )
+
+
+_VALUES: dict[str, Callable[[VehicleSignals], _Values]] = {
+    "DriverRequest": _driver_request,
+    "MotorState": _motor_state,
+    "WheelSpeedsFront": _wheel_speeds_front,
+    "WheelSpeedsRear": _wheel_speeds_rear,
+}
+
 _STATES = {int(state): state for state in TcsState}
 _CONTROLLERS = {int(kind): kind for kind in ControllerKind}
 
@@ -125,41 +157,8 @@ class VehicleNode:
         return self._bench.frame(tick)
 
 
-_Values: TypeAlias = tuple[float, ...]
-
-
 def _cyclic_outboxes(
     database: Database,
 ) -> list[tuple[Outbox, Callable[[VehicleSignals], _Values]]]:
     specs = sorted((database.messages[name] for name in _VALUES), key=lambda spec: spec.frame_id)
     return [(Outbox(spec), _VALUES[spec.name]) for spec in specs]
-
-
-def _driver_request(signals: VehicleSignals) -> _Values:
-    return signals.driver_torque_nm
-
-
-def _motor_state(signals: VehicleSignals) -> _Values:
-    return *signals.motor_speed_radps, *signals.motor_torque_nm
-
-
-def _wheel_speeds_front(signals: VehicleSignals) -> _Values:
-    return *signals.wheel_speed_radps[:2], *signals.wheel_speed_valid[:2]
-
-
-def _wheel_speeds_rear(signals: VehicleSignals) -> _Values:
-    accel = signals.accel_x_mps2
-    return (
-        *signals.wheel_speed_radps[2:],
-        *signals.wheel_speed_valid[2:],
-        0.0 if accel is None else accel,
-        accel is not None,
-    )
-
-
-_VALUES: dict[str, Callable[[VehicleSignals], _Values]] = {
-    "DriverRequest": _driver_request,
-    "MotorState": _motor_state,
-    "WheelSpeedsFront": _wheel_speeds_front,
-    "WheelSpeedsRear": _wheel_speeds_rear,
-}

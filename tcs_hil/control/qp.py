@@ -16,6 +16,9 @@ from tcs_hil.control.protocol import SolveStatus
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-7
+RELATIVE_TOLERANCE = 1e-10
+"""Matters only for gradients so large that the absolute tolerance is below rounding."""
+
 MAX_ITERATIONS = 4000
 CHECK_EVERY = 5
 _STATUS = {
@@ -85,7 +88,7 @@ def _compiled_solver(scaled_hessian: FloatArray, penalty: float, max_iterations:
         adaptive_rho=False,
         scaling=0,
         eps_abs=TOLERANCE,
-        eps_rel=0.0,
+        eps_rel=RELATIVE_TOLERANCE,
         max_iter=max_iterations,
         check_termination=CHECK_EVERY,
         verbose=False,

@@ -39,7 +39,7 @@ def save_slip_figure(
     torque.plot(longest["time_s"], longest["request_nm"], **REFERENCE, label="driver's request")
     slip.set(title=title, ylabel="slip ratio", ylim=(-0.02, _slip_top(runs)))
     torque.set(xlabel="time in s", ylabel="motor torque in Nm")
-    torque.legend(loc="lower right", ncols=2)
+    figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     _finish(figure, path)
 
 
@@ -57,7 +57,7 @@ def save_prediction_figure(path: Path, comparison: Comparison) -> None:
         axes.set_ylabel(label)
     torque.step(time_ms[:-1], comparison.torque_nm, where="post", color="0.3")
     torque.set(xlabel="time in ms", ylabel="motor torque in Nm")
-    states[0].legend(loc="upper left", ncols=2)
+    figure.legend(*states[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     states[0].set_title("Prediction from 20 km/h and slip 0.1 under random torque")
     _finish(figure, path)
 
@@ -69,10 +69,8 @@ def _mark_friction_changes(axes: Axes, truth: Truth, colour: str) -> None:
 
 
 def _slip_top(runs: Mapping[str, Truth]) -> float:
-    """Room for every line that is being controlled; the uncontrolled one may leave the axes."""
-    held = [truth for controller, truth in runs.items() if controller != "off"]
-    peak = max(float(truth["slip_ratio"][:, :2].max()) for truth in held or runs.values())
-    return max(1.15 * peak, 0.15)
+    peak = max(float(truth["slip_ratio"][:, 0].max()) for truth in runs.values())
+    return max(1.1 * peak, 0.15)
 
 
 def _finish(figure: Figure, path: Path) -> None:

@@ -68,7 +68,9 @@ class Summary:
 def summarise(ticks: NDArray[np.void]) -> Summary:
     """Summarise ticks as ``recording.read`` returns them: (n,), n may be 0."""
     asked = ~np.isnan(_both(ticks, "proposal_{}_nm"))
-    latency_ns = ticks["latency_ns"]
+    # A tick that met no new speeds has no latency of its own: the bus was silent, not we late.
+    fresh = np.diff(ticks["wheel_stamp_ns"], prepend=0) != 0
+    latency_ns = ticks["latency_ns"][fresh]
     age_s = ticks["rear_speed_age_s"]
     return Summary(
         ticks=len(ticks),

@@ -5,11 +5,12 @@ from __future__ import annotations
 import errno
 import time
 from collections import deque
+from contextlib import closing
 
 import can
 import pytest
 
-from tcs_hil.canbus.port import DRAIN_LIMIT, CanPort, PortCounters
+from tcs_hil.canbus.port import DRAIN_LIMIT, CanPort, PortCounters, open_port
 from tcs_hil.errors import BusError
 
 
@@ -122,7 +123,7 @@ def test_a_removed_interface_is_reopened(code):
 
 
 def test_an_interface_that_is_merely_down_is_not_reopened():
-    port = CanPort(ScriptedBus(operation_error(errno.ENETDOWN)), reopen=lambda: ScriptedBus())
+    port = CanPort(ScriptedBus(operation_error(errno.ENETDOWN)), reopen=ScriptedBus)
     port.receive()
     port.receive()
     assert port.counters.reopened == 0
@@ -145,3 +146,12 @@ def test_without_a_way_to_reopen_the_port_goes_on_counting():
     port = CanPort(ScriptedBus(*[operation_error(errno.ENODEV)] * 3))
     assert [port.receive() for _ in range(3)] == [[], [], []]
     assert port.counters.rx_errors == 3
+
+
+def test_a_port_is_opened_like_a_bus():
+    port, description = open_port("virtual", "somewhere", send_timeout_s=0.1)
+    peer, _ = open_port("virtual", "somewhere")
+    with closing(port), closing(peer):
+        assert description == "virtual somewhere"
+        assert port.send(0x90, b"x")
+        assert [frame.data for frame in peer.receive()] == [b"x"]

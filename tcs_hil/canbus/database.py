@@ -6,6 +6,7 @@ import importlib.resources
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 import cantools
 from cantools.database.can import Database as CanDatabase
@@ -86,9 +87,7 @@ def _parse(source: str, text: str) -> CanDatabase:
     except UnsupportedDatabaseFormatError as error:
         sentence = " ".join(str(error.e_dbc).split())
         raise DatabaseError(f"{source} is not a valid DBC: {sentence}") from error
-    if not isinstance(parsed, CanDatabase):
-        raise DatabaseError(f"{source} is not a CAN database")
-    return parsed
+    return cast(CanDatabase, parsed)  # the union with a diagnostics database is for CDD files
 
 
 def _message_spec(parsed: CanDatabase, contract: MessageContract) -> MessageSpec:

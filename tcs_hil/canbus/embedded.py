@@ -84,11 +84,12 @@ class EmbeddedBus(can.BusABC):
             # One event at a time: epoll then takes the nodes in turn, so none starves another.
             while events := self._epoll.poll(0, 1):
                 msg = self._read(events[0][0])
-                if msg is not None:
-                    return msg, False
+                # Filtered here, as recv would take one unwanted frame for an empty bus.
+                if msg is not None and self._matches_filters(msg):
+                    return msg, True
             wait_s = None if deadline is None else deadline - time.monotonic()
             if wait_s is not None and wait_s <= 0:
-                return None, False
+                return None, True
             # select keeps the microseconds that epoll would round up to milliseconds.
             select.select([self._epoll], [], [], wait_s)
 

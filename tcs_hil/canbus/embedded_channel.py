@@ -43,7 +43,8 @@ class Channel:
             self._path = directory / f"{os.getpid()}-{secrets.token_hex(4)}{_SUFFIX}"
             self._arrive(_private_directory(directory))
         except OSError as error:
-            self.listener.close()
+            for link in (self.listener, *self.peers):
+                link.close()
             raise can.CanInitializationError(f"embedded channel {name}: {error}") from error
 
     def leave(self) -> None:
@@ -53,9 +54,20 @@ class Channel:
 
     def _arrive(self, directory: Path) -> None:
         with _locked(directory / _LOCK_NAME):
-            self.peers = [peer for path in _sockets(directory) if (peer := _connect(path))]
+            for path in directory.glob(f"*{_SUFFIX}"):
+                self._meet(path)
             self.listener.bind(str(self._path))
             self.listener.listen(_BACKLOG)
+
+    def _meet(self, path: Path) -> None:
+        """Connect to a node, or sweep away what a dead one left behind."""
+        peer = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET | socket.SOCK_NONBLOCK)
+        self.peers.append(peer)
+        try:
+            peer.connect(str(path))
+        except (ConnectionRefusedError, FileNotFoundError):
+            path.unlink(missing_ok=True)
+            self.peers.pop().close()
 
 
 def _base() -> Path:
@@ -81,22 +93,3 @@ def _locked(path: Path) -> Iterator[None]:
         yield
     finally:
         os.close(descriptor)
-
-
-def _sockets(directory: Path) -> list[Path]:
-    return sorted(directory.glob(f"*{_SUFFIX}"))
-
-
-def _connect(path: Path) -> socket.socket | None:
-    """Connect to a node, or sweep away what a dead one left behind."""
-    peer = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET | socket.SOCK_NONBLOCK)
-    try:
-        peer.connect(str(path))
-    except (ConnectionRefusedError, FileNotFoundError):
-        path.unlink(missing_ok=True)
-        peer.close()
-        return None
-    except OSError:
-        peer.close()
-        raise
-    return peer

@@ -40,13 +40,6 @@ class Mailbox:
         self._decode = spec.codec.decode
         self._checker = Checker(spec.e2e) if spec.e2e is not None else None
 
-    @property
-    def status(self) -> E2EStatus:
-        """Verdict on the newest frame; OK or NONE for a message without protection."""
-        if self._checker is not None:
-            return self._checker.status
-        return E2EStatus.NONE if self.stamp_ns is None else E2EStatus.OK
-
     def put(self, data: bytes, stamp_ns: int) -> E2EStatus:
         """Judge a frame of the right length and keep its values when they are good."""
         status = self._checker.check(data) if self._checker is not None else E2EStatus.OK

@@ -44,9 +44,12 @@ def command(
     """
     from tcs_hil.cli.progress import progress_bar
     from tcs_hil.config import read_toml
+    from tcs_hil.errors import ConfigError
     from tcs_hil.model.edmd import DEFAULT_SEED, IdentificationSettings, identify
     from tcs_hil.model.evaluation import figure1, prediction_errors
 
+    if not output.absolute().parent.is_dir():
+        raise ConfigError(f"{output}: there is no such folder to write the model file into")
     settings = (
         read_toml(settings_path, IdentificationSettings)
         if settings_path

@@ -47,9 +47,12 @@ def command(config_path: Path | None, as_json: bool, **options: Any) -> None:
     from tcs_hil.service.daemon import serve
 
     config = ServiceConfig() if config_path is None else read_toml(config_path, ServiceConfig)
-    summary = serve(_with_options(config, options), click.echo)
-    if summary is not None:
-        show_summary(summary, as_json)
+    show_summary(serve(_with_options(config, options), _say), as_json)
+
+
+def _say(line: str) -> None:
+    """On stderr, so that stdout holds the summary alone."""
+    click.echo(line, err=True)
 
 
 def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConfig:

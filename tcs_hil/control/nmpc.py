@@ -33,12 +33,12 @@ class NonlinearOptimiser:
         self._problem.start_from(state, torque_ref_nm)
         feasible = np.minimum(self._guess, torque_ref_nm)
         plan = minimise(self._problem, feasible, torque_ref_nm, self._max_iterations)
-        self._guess = np.maximum(plan.inputs, 0.0)
+        self._guess = plan.inputs
         return plan
 
     def reset(self) -> None:
         """Forget the last plan."""
-        self._guess[:] = 0.0
+        self._guess = np.zeros_like(self._guess)
 
 
 def nonlinear_mpc(settings: ControlSettings, vehicle: Vehicle) -> PredictiveController:

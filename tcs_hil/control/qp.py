@@ -16,9 +16,6 @@ from tcs_hil.control.protocol import SolveStatus
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-7
-RELATIVE_TOLERANCE = 1e-10
-"""Matters only for gradients so large that the absolute tolerance is below rounding."""
-
 MAX_ITERATIONS = 4000
 CHECK_EVERY = 5
 _STATUS = {
@@ -30,12 +27,15 @@ _STATUS = {
 class OsqpBox:
     """Minimise x'Hx/2 + g'x over lower <= x_i <= upper, H (n, n) positive definite.
 
-    Three choices make OSQP both exact and quick here.  The objective is scaled
+    Four choices make OSQP both exact and quick here.  The objective is scaled
     to a largest eigenvalue of 1, because the tolerances are absolute.  The
     penalty is fixed at the geometric mean of the extreme eigenvalues, near the
     best for ADMM, so that no solve depends on how an earlier one adapted it.
-    And the box is open at set-up: equal bounds would choose the penalty of
-    equality constraints.
+    The box is open at set-up: equal bounds would choose the penalty of equality
+    constraints.  And the gradient is clipped where it has decided: in a box of
+    radius r no |(Hx)_i| exceeds sqrt(n) r, so a larger |g_i| pins x_i to its
+    bound however large it is, while one of 1e9 (the lifted state far outside
+    its data) would drown the tolerance in rounding.
     """
 
     def __init__(self, hessian: FloatArray, max_iterations: int = MAX_ITERATIONS) -> None:
@@ -44,6 +44,7 @@ class OsqpBox:
         self._lower = np.zeros(len(hessian))
         self._upper = np.zeros(len(hessian))
         penalty = math.sqrt(float(eigenvalues[0]) * self._scale)
+        self._decided = 2.0 * math.sqrt(len(hessian))  # per unit of radius, with a margin of 2
         self._solver = _compiled_solver(hessian * self._scale, penalty, max_iterations)
 
     def solve(self, gradient: FloatArray, lower: float, upper: float) -> Plan:
@@ -52,13 +53,18 @@ class OsqpBox:
         The result lies in the box up to ``TOLERANCE``.  Nothing is raised: a
         problem that is not finite, or a solver in trouble, is ``FAILED``.
         """
-        if not math.isfinite(gradient.sum() + lower + upper):
+        scaled = gradient * self._scale
+        size = float(scaled @ scaled)
+        if not math.isfinite(size + lower + upper):
             return Plan(gradient, SolveStatus.FAILED, 0)
         self._lower.fill(lower)
         self._upper.fill(upper)
         if lower == upper:
             return Plan(self._lower.copy(), SolveStatus.OK, 0)
-        self._solver.update_data_vec(q=gradient * self._scale, l=self._lower, u=self._upper)
+        limit = self._decided * max(abs(lower), abs(upper))
+        if size > limit * limit:
+            scaled = np.clip(scaled, -limit, limit)
+        self._solver.update_data_vec(q=scaled, l=self._lower, u=self._upper)
         self._solver.solve()
         info = self._solver.info
         status = _STATUS.get(info.status_val, SolveStatus.FAILED)
@@ -88,7 +94,7 @@ def _compiled_solver(scaled_hessian: FloatArray, penalty: float, max_iterations:
         adaptive_rho=False,
         scaling=0,
         eps_abs=TOLERANCE,
-        eps_rel=RELATIVE_TOLERANCE,
+        eps_rel=0.0,
         max_iter=max_iterations,
         check_termination=CHECK_EVERY,
         verbose=False,

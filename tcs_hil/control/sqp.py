@@ -23,8 +23,6 @@ solution are small), so what is left is about 1e-5 Nm.
 
 ARMIJO = 1e-4
 STEP_LENGTHS = tuple(0.5**k for k in range(16))
-ROUNDING = 1e-12
-"""Relative change of the cost that means nothing: sums of squares lose that much."""
 
 
 class LeastSquares(Protocol):
@@ -72,10 +70,9 @@ def _search(
 ) -> tuple[FloatArray, float]:
     """Go along the step until the cost falls enough (Armijo); the model follows the plan."""
     slope = ARMIJO * float(problem.gradient @ step)
-    slack = ROUNDING * cost
     for length in STEP_LENGTHS:
         trial = plan + length * step
         trial_cost = problem.at(trial)
-        if trial_cost <= cost + length * slope + slack:
+        if trial_cost <= cost + length * slope:
             break
     return trial, trial_cost

@@ -9,11 +9,8 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
-import can
-
-from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.database import load_database
-from tcs_hil.canbus.port import CanPort
+from tcs_hil.canbus.port import CanPort, open_port
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.runtime import recording
 from tcs_hil.runtime.clock import MonotonicClock
@@ -43,10 +40,9 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
     laws = build_laws(config, clock)
     with ExitStack() as cleanup:
         stop = cleanup.enter_context(StopRequest())
-        bus, description = open_bus(
+        port, description = open_port(
             config.bus.interface, config.bus.channel, config.bus.bitrate
         )
-        port = CanPort(bus, reopen=lambda: _reopened(config))
         cleanup.callback(port.close)
         path = _recording_path(config, cleanup)
         recorder = cleanup.enter_context(_recorder(config, path, description))
@@ -100,10 +96,6 @@ def _recording_path(config: ServiceConfig, cleanup: ExitStack) -> Path:
     if config.recorder.path is not None:
         return Path(config.recorder.path)
     return Path(cleanup.enter_context(tempfile.TemporaryDirectory(prefix="tcs-hil."))) / "flight"
-
-
-def _reopened(config: ServiceConfig) -> can.BusABC:
-    return open_bus(config.bus.interface, config.bus.channel, config.bus.bitrate)[0]
 
 
 def _period_ns(config: ServiceConfig) -> int:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import can
 import pytest
@@ -115,13 +118,15 @@ def test_what_a_killed_process_left_on_disk_is_swept_away(
     assert not sockets[0].exists()
 
 
-def test_what_a_node_said_before_it_left_is_still_heard(open_bus):
+@pytest.mark.parametrize("notices_by", ["sending", "reading"])
+def test_what_a_node_said_before_it_left_is_still_heard(open_bus, notices_by):
     reader, speaker = open_bus(), open_bus()
     reader.send(message(b"unread"))  # so that leaving resets the connection
     for number in range(10):
         speaker.send(message(bytes([number])))
     speaker.shutdown()
-    reader.send(message(b"nobody"))
+    if notices_by == "sending":
+        reader.send(message(b"nobody"))
     assert [reader.recv(1.0).data[0] for _ in range(10)] == list(range(10))
     assert reader.recv(0.0) is None
 
@@ -156,6 +161,30 @@ def test_a_full_reader_is_waited_for_as_long_as_asked(open_bus):
     with pytest.raises(can.CanTimeoutError):
         sender.send(message(), timeout=0.05)
     assert time.monotonic() - start >= 0.05
+
+
+def test_a_full_reader_that_reads_again_gets_every_frame(open_bus):
+    sender, lazy = open_bus(), open_bus()
+    count = fill(sender)
+    with ThreadPoolExecutor() as pool:
+        last = pool.submit(sender.send, message(count.to_bytes(4, "big")), timeout=10.0)
+        heard = [lazy.recv(10.0) for _ in range(count + 1)]
+        last.result()
+    assert [int.from_bytes(msg.data, "big") for msg in heard] == list(range(count + 1))
+
+
+def test_an_unwanted_frame_does_not_hide_the_wanted_one_behind_it(open_bus):
+    sender = open_bus()
+    reader = open_bus(can_filters=[{"can_id": 0x90, "can_mask": 0x7FF}])
+    sender.send(message(b"unwanted", frame_id=0x91))
+    sender.send(message(b"wanted"))
+    assert reader.recv(0.0).data == b"wanted"
+
+
+def test_reading_a_silent_bus_ends_with_the_timeout(open_bus):
+    bus, start = open_bus(), time.monotonic()
+    assert bus.recv(0.02) is None
+    assert time.monotonic() - start >= 0.02
 
 
 def test_own_frames_come_back_on_request_and_are_marked(open_bus):
@@ -211,6 +240,25 @@ def test_a_channel_must_have_a_plain_name(name):
 def test_a_directory_others_can_enter_is_refused(private_runtime_directory):
     (private_runtime_directory / "tcs-hil").mkdir(mode=0o755)
     with pytest.raises(can.CanInitializationError, match="only this user can enter"):
+        EmbeddedBus("vcan0")
+
+
+def test_without_a_runtime_directory_nodes_meet_in_the_temporary_one(
+    open_bus, monkeypatch, private_runtime_directory
+):
+    monkeypatch.delenv("XDG_RUNTIME_DIR")
+    monkeypatch.setattr(tempfile, "tempdir", str(private_runtime_directory))
+    open_bus()
+    (place,) = private_runtime_directory.iterdir()
+    assert place.name == f"tcs-hil-{os.getuid()}"
+    assert place.stat().st_mode & 0o777 == 0o700
+
+
+def test_a_path_too_long_for_a_socket_is_named(monkeypatch, private_runtime_directory):
+    deep = private_runtime_directory / ("d" * 100)
+    deep.mkdir()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(deep))
+    with pytest.raises(can.CanInitializationError, match=r"channel vcan0: .*too long"):
         EmbeddedBus("vcan0")
 
 

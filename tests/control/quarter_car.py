@@ -29,8 +29,8 @@ def constant_friction(_distance_m: float) -> float:
 
 def varying_friction(distance_m: float) -> float:
     """Manoeuvre 2."""
-    return next(mu for end, mu in ((10, 0.3), (20, 0.15), (30, 0.6), (math.inf, 0.3))
-                if distance_m < end)  # fmt: skip
+    patches = ((10.0, 0.3), (20.0, 0.15), (30.0, 0.6), (math.inf, 0.3))
+    return next(mu for end_m, mu in patches if distance_m < end_m)
 
 
 def driver_ramp(time_s: float) -> float:
@@ -107,7 +107,6 @@ class Run:
     speed_mps: np.ndarray  # (n,)
     torque_nm: np.ndarray  # (n,)
     reachable: np.ndarray  # (n,) bool: the driver's torque can hold the reference
-    wheels: list[WheelState]
 
     def tracking_rmse(self, *, after_s: float = 0.6, below_mps: float = math.inf) -> float:
         """Slip RMSE over the samples in which the reference can be reached."""
@@ -115,22 +114,25 @@ class Run:
         return float(np.sqrt(np.mean((self.slip[judged] - 0.1) ** 2)))
 
 
-def drive(controller: Controller, friction_at: FrictionAt, duration_s: float,
-          distance_m: float = math.inf) -> Run:  # fmt: skip
+def drive(
+    controller: Controller,
+    friction_at: FrictionAt,
+    duration_s: float,
+    distance_m: float = math.inf,
+) -> Run:
     """Close the loop without delay: the torque acts in the period it was proposed for."""
-    car, torque, rows, wheels = QuarterCar(friction_at), 0.0, [], []
+    car, torque, rows = QuarterCar(friction_at), 0.0, []
     for tick in range(round(duration_s / PERIOD_S)):
         if car.distance_m >= distance_m:
             break
         time_s = tick * PERIOD_S
         reference = driver_ramp(time_s)
-        wheels.append(car.sensed(torque))
-        torque = controller.step(wheels[-1], reference).torque_nm
+        torque = controller.step(car.sensed(torque), reference).torque_nm
         can_reach = reachable(reference, friction_at(car.distance_m))
         rows.append((time_s, car.slip_ratio, car.speed_mps, torque, can_reach))
         car.step(torque)
     time, kappa, speed, torques, held = (np.array(column) for column in zip(*rows, strict=True))
-    return Run(time, kappa, speed, torques, held.astype(bool), wheels)
+    return Run(time, kappa, speed, torques, held.astype(bool))
 
 
 def manoeuvre_1(controller: Controller) -> Run:

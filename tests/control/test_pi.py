@@ -28,6 +28,14 @@ def test_it_gives_all_torque_back_once_the_wheel_grips(controller: PiController)
     assert returned == 150.0
 
 
+def test_a_dip_below_the_entry_slip_does_not_hand_the_request_back_at_once(
+    controller: PiController,
+) -> None:
+    for _ in range(20):
+        controller.step(wheel_at(5.0, 0.2), 150.0)
+    assert controller.step(wheel_at(5.0, 0.07), 150.0).torque_nm < 140.0
+
+
 def test_an_integral_held_down_by_a_small_request_does_not_wind_up(
     controller: PiController,
 ) -> None:

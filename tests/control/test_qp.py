@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import daqp
 import numpy as np
 import pytest
@@ -27,6 +29,20 @@ def exact(hessian: np.ndarray, gradient: np.ndarray, lower: float, upper: float)
     return x
 
 
+def enumerated(hessian: np.ndarray, gradient: np.ndarray) -> np.ndarray:
+    """Minimiser over [-3, 4]^N by trying every set of active bounds: slow, and beyond doubt."""
+    for pattern in product((None, -3.0, 4.0), repeat=N):
+        free = np.array([bound is None for bound in pattern])
+        x = np.array([0.0 if bound is None else bound for bound in pattern])
+        rhs = -(gradient + hessian @ x)
+        x[free] = np.linalg.solve(hessian[np.ix_(free, free)], rhs[free])
+        slope = gradient + hessian @ x
+        inside = ((x >= -3.0) & (x <= 4.0)).all()
+        if inside and (slope[x == -3.0] >= 0).all() and (slope[x == 4.0] <= 0).all():
+            return x
+    raise AssertionError("a strictly convex QP has a minimiser")
+
+
 @pytest.mark.parametrize("condition", [1.0, 12.0, 300.0])
 def test_random_problems_are_solved_like_an_active_set_solver(condition: float) -> None:
     rng = np.random.default_rng(7)
@@ -42,6 +58,21 @@ def test_random_problems_are_solved_like_an_active_set_solver(condition: float) 
         np.testing.assert_allclose(
             plan.inputs, exact(hessian, gradient, lower, upper), atol=allowed, rtol=0
         )
+
+
+@pytest.mark.parametrize("size", [1e2, 1e6, 1e12])
+def test_a_huge_gradient_is_solved_as_exactly_and_as_quickly(size: float) -> None:
+    rng = np.random.default_rng(5)
+    hessian = random_hessian(rng, 12.0)
+    qp = OsqpBox(hessian)
+    for _ in range(50):
+        # One input is decided by far, the others are not.
+        gradient = hessian @ rng.normal(scale=2.0, size=N)
+        gradient[rng.integers(N)] = rng.choice([-size, size]) * 1e-3
+        plan = qp.solve(gradient, -3.0, 4.0)
+        assert plan.status is SolveStatus.OK
+        assert plan.iterations <= 100
+        np.testing.assert_allclose(plan.inputs, enumerated(hessian, gradient), atol=1e-5)
 
 
 def test_a_box_of_one_point_is_answered_without_the_solver_and_does_no_harm() -> None:
@@ -72,8 +103,7 @@ def test_running_out_of_iterations_is_a_status() -> None:
     assert plan.status is SolveStatus.MAX_ITERATIONS
 
 
-def test_the_compiled_solver_takes_what_the_public_class_takes() -> None:
-    # ``OsqpBox`` uses the object behind ``osqp.OSQP``; a release that moves it fails here first.
+def test_after_a_reset_a_solve_repeats_the_first_one_bit_for_bit() -> None:
     hessian = random_hessian(np.random.default_rng(3), 12.0)
     qp = OsqpBox(hessian)
     cold = qp.solve(np.full(N, 1e-3), -3.0, 4.0)

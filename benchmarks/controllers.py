@@ -1,0 +1,162 @@
+"""Time of one controller step along the paper's two manoeuvres, beside the paper's own figures.
+
+    python -m benchmarks.controllers                    a table
+    python -m benchmarks.controllers --json > out.json  the same, for programs
+
+The loop is closed with the paper's quarter car, without delay.  Steps without a
+driver's request solve nothing and are left out.  Wall time contains whatever
+else the machine does; thread CPU time does not.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import platform
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import click
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+
+from tcs_hil.control.factory import make_controller
+from tcs_hil.control.protocol import Controller, Proposal, WheelState
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import ControllerKind
+from tests.control.quarter_car import Run, manoeuvre_1, manoeuvre_2
+
+MANOEUVRES: dict[str, Callable[[Controller], Run]] = {
+    "constant": manoeuvre_1,
+    "varying": manoeuvre_2,
+}
+PAPER_US = {  # mean and maximum on the authors' PC, Table III
+    ("KMPC", "constant"): (4.0, 43.2),
+    ("KMPC", "varying"): (3.7, 62.7),
+    ("NMPC", "constant"): (197.0, 600.0),
+    ("NMPC", "varying"): (210.0, 507.0),
+}
+
+
+@dataclass
+class Stopwatch:
+    """A controller that times the one it wraps."""
+
+    controller: Controller
+    wall_ns: list[int] = field(default_factory=list)
+    cpu_ns: list[int] = field(default_factory=list)
+
+    def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
+        """Pass the call on, with the clocks as close around it as they get."""
+        cpu = time.thread_time_ns()
+        wall = time.perf_counter_ns()
+        proposal = self.controller.step(wheel, torque_ref_nm)
+        wall_end = time.perf_counter_ns()
+        cpu_end = time.thread_time_ns()
+        if torque_ref_nm > 0.0:
+            self.wall_ns.append(wall_end - wall)
+            self.cpu_ns.append(cpu_end - cpu)
+        return proposal
+
+    def reset(self) -> None:
+        """Pass the call on."""
+        self.controller.reset()
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Of one kind of time over all steps, in microseconds."""
+
+    mean_us: float
+    p50_us: float
+    p99_us: float
+    max_us: float
+
+    @classmethod
+    def of(cls, times_ns: list[int]) -> Statistics:
+        """Statistics of a list of nanoseconds."""
+        times_us = np.array(times_ns) / 1e3
+        p50, p99 = np.percentile(times_us, (50, 99))
+        figures = (times_us.mean(), p50, p99, times_us.max())
+        return cls(*(round(float(figure), 2) for figure in figures))
+
+
+@dataclass(frozen=True)
+class Row:
+    """One controller along one manoeuvre."""
+
+    controller: str
+    manoeuvre: str
+    steps: int
+    wall: Statistics
+    cpu: Statistics
+    paper_mean_us: float | None
+    paper_max_us: float | None
+
+
+def measure(kind: ControllerKind, manoeuvre: str, predictor: KoopmanPredictor, runs: int) -> Row:
+    """Drive the manoeuvre ``runs`` times, each from a fresh controller."""
+    wall_ns: list[int] = []
+    cpu_ns: list[int] = []
+    for _ in range(runs):
+        watch = Stopwatch(make_controller(kind, ControlSettings(), Vehicle(), predictor))
+        MANOEUVRES[manoeuvre](watch)
+        wall_ns += watch.wall_ns
+        cpu_ns += watch.cpu_ns
+    paper = PAPER_US.get((kind.name, manoeuvre), (None, None))
+    wall, cpu = Statistics.of(wall_ns), Statistics.of(cpu_ns)
+    return Row(kind.name, manoeuvre, len(wall_ns), wall, cpu, *paper)
+
+
+def machine() -> str:
+    """Processor and interpreter, for the head of the table."""
+    cpuinfo = Path("/proc/cpuinfo")
+    lines = cpuinfo.read_text(encoding="utf-8").splitlines() if cpuinfo.exists() else []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    processor = names[0] if names else platform.machine()
+    return f"{processor}, Python {platform.python_version()}"
+
+
+def as_table(rows: list[Row]) -> Table:
+    """Rows for people: wall time in full, CPU time by mean and p99, the paper's by mean and max."""
+    table = Table(
+        title=f"Controller step in µs, {machine()}", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0)
+    )
+    for heading in ("law", "mu"):
+        table.add_column(heading, no_wrap=True)
+    for heading in ("mean", "p50", "p99", "max", "CPU", "CPU p99", "paper"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in rows:
+        wall, cpu = row.wall, row.cpu
+        figures = (wall.mean_us, wall.p50_us, wall.p99_us, wall.max_us, cpu.mean_us, cpu.p99_us)
+        known = row.paper_mean_us is not None
+        paper = f"{row.paper_mean_us:g}/{row.paper_max_us:g}" if known else "-"
+        table.add_row(row.controller, row.manoeuvre, *(f"{x:.1f}" for x in figures), paper)
+    return table
+
+
+@click.command()
+@click.option("--runs", type=click.IntRange(1), default=3, show_default=True, help="Per row.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
+def main(runs: int, as_json: bool) -> None:
+    """Time every controller along both manoeuvres of the paper."""
+    predictor = KoopmanPredictor.load(default_model_path(), ControlSettings().period_s)
+    work = [(kind, name) for kind in ControllerKind for name in MANOEUVRES]
+    gc.disable()  # as the service does in its loop
+    progress = track(work, "measuring", console=Console(stderr=True), transient=True)
+    rows = [measure(kind, name, predictor, runs) for kind, name in progress]
+    if as_json:
+        click.echo(json.dumps({"machine": machine(), "rows": [asdict(row) for row in rows]}))
+    else:
+        Console().print(as_table(rows))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,94 @@
+"""Whole runs: recorder, service and emulator as processes on the embedded bus."""
+
+import uuid
+from pathlib import Path
+
+import can
+import numpy as np
+import pytest
+
+from tcs_hil.hil.metrics import slip_metrics
+from tcs_hil.hil.processes import ProcessError
+from tcs_hil.hil.run import Mode, RunPlan, execute
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import TcsState
+
+SHORT = """
+description = "the paper's launch, cut short"
+duration_s = 0.5
+start_speed_kmph = 2.0
+road = [{ mu = 0.3 }]
+
+[driver]
+request = [[0.05, 0.0], [0.25, 250.0]]
+"""
+
+SERVICE_IDS = {0x090, 0x300, 0x7F1}
+DECISIONS = ("now_ns", "slip_ratio_fl", "proposal_fl_nm", "limit_fl_nm", "limit_fr_nm", "state")
+
+
+@pytest.fixture
+def plan(tmp_path: Path):
+    scenario = tmp_path / "short.toml"
+    scenario.write_text(SHORT)
+
+    def make(controller: str, mode: Mode, name: str = "run") -> RunPlan:
+        return RunPlan(
+            scenario=str(scenario),
+            vehicle="quarter-car",
+            controller=controller,
+            mode=mode,
+            folder=tmp_path / name,
+            interface="embedded",
+            channel=f"vcan-{uuid.uuid4().hex[:8]}",
+        )
+
+    return make
+
+
+def test_in_lockstep_two_runs_give_the_same_bytes(plan) -> None:
+    first, second = execute(plan("kmpc", "lockstep", "a")), execute(plan("kmpc", "lockstep", "b"))
+    np.testing.assert_array_equal(first.read_truth(), second.read_truth())
+    for name in DECISIONS:
+        np.testing.assert_array_equal(first.read_flight()[name], second.read_flight()[name])
+    # The embedded bus keeps the order of each sender, not that between senders.
+    for ids in (SERVICE_IDS, set(range(0x800)) - SERVICE_IDS):
+        assert [f for f in frames(first.bus) if f[0] in ids] == [
+            f for f in frames(second.bus) if f[0] in ids
+        ]
+
+
+def test_in_real_time_the_controller_holds_what_no_control_loses(plan) -> None:
+    peaks = {}
+    for controller in ("off", "kmpc"):
+        truth = execute(plan(controller, "realtime", controller)).read_truth()
+        peaks[controller] = slip_metrics(truth, 0.1, Vehicle()).peak_ratio
+    # The reference is 0.1; a tick of a busy machine may come late, losing control may not.
+    assert peaks["kmpc"] < 0.3 < peaks["off"]
+
+
+def test_every_frame_of_a_run_is_in_a_recording_others_can_read(plan) -> None:
+    files = execute(plan("pi", "lockstep"))
+    ticks = len(files.read_flight())
+    sent = [frame_id for frame_id, _ in frames(files.bus)]
+    assert ticks == 250
+    assert sent.count(0x090) == sent.count(0x0A0) == sent.count(0x0A2) == ticks
+    assert sent.count(0x098) == ticks // 5
+    assert sent.count(0x300) == ticks // 10
+
+
+def test_the_flight_recording_tells_the_states_in_order(plan) -> None:
+    states = execute(plan("nmpc", "lockstep")).read_flight()["state"]
+    changes = states[np.flatnonzero(np.diff(states, prepend=-1))]
+    assert list(changes[:3]) == [TcsState.INIT, TcsState.STANDBY, TcsState.ACTIVE]
+
+
+def test_a_scenario_that_does_not_exist_ends_the_run_with_its_name(plan, tmp_path: Path) -> None:
+    missing = RunPlan("no-such-road", "quarter-car", "off", "lockstep", tmp_path / "x", "embedded")
+    with pytest.raises(ProcessError, match="no-such-road"):
+        execute(missing)
+
+
+def frames(path: Path) -> list[tuple[int, bytes]]:
+    with can.LogReader(str(path)) as reader:
+        return [(message.arbitration_id, bytes(message.data)) for message in reader]

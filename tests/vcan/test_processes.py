@@ -1,0 +1,88 @@
+"""Daemon and emulator as processes on a real vcan0, with strangers on the bus."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import can
+
+from tcs_hil.canbus.bus import open_bus
+from tcs_hil.hil.metrics import slip_metrics
+from tcs_hil.hil.processes import Program, program
+from tcs_hil.hil.run import RunPlan, execute
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.runtime.recording import read
+
+from .conftest import CHANNEL, Candump, Interface
+
+LIMIT_ID = 0x090
+
+
+@contextmanager
+def daemon(tmp_path: Path, *options: str) -> Iterator[Program]:
+    arguments = ("tcs_hil", "run", "--channel", CHANNEL, "--controller", "pi", *options)
+    with program(*arguments, log=tmp_path / "service.log") as child:
+        yield child
+
+
+def next_limit(bus: can.BusABC) -> can.Message:
+    while (message := bus.recv(timeout=10.0)) is not None:
+        if message.arbitration_id == LIMIT_ID:
+            return message
+    raise AssertionError("the daemon is silent")
+
+
+def test_the_papers_manoeuvre_runs_in_lockstep_on_a_real_bus(tmp_path: Path) -> None:
+    files = execute(RunPlan("manoeuvre-1", "quarter-car", "kmpc", "lockstep", tmp_path / "run"))
+    assert "bus: socketcan vcan0" in (tmp_path / "run" / "service.log").read_text()
+    metrics = slip_metrics(files.read_truth(), 0.1, Vehicle())
+    assert metrics.rmse_ratio <= 0.006
+    assert metrics.peak_ratio <= 0.135
+
+
+def test_the_papers_manoeuvre_runs_in_real_time_on_a_real_bus(tmp_path: Path) -> None:
+    files = execute(RunPlan("manoeuvre-1", "quarter-car", "pi", "realtime", tmp_path / "run"))
+    # A guest on a busy machine loses ticks; a wheel that spins up is still out of the question.
+    assert slip_metrics(files.read_truth(), 0.1, Vehicle()).peak_ratio < 0.5
+    assert len(read(files.flight)) > 100
+
+
+def test_candump_sees_the_limits(tmp_path: Path, candump: Callable[[int], Candump]) -> None:
+    dump = candump(50)
+    with daemon(tmp_path):
+        seen = dump.frames()
+    assert {frame.partition("#")[0] for frame in seen} == {"090", "300"}
+
+
+def test_frames_typed_by_hand_do_not_disturb_it(
+    tmp_path: Path, cansend: Callable[[str], None]
+) -> None:
+    bus, _ = open_bus("socketcan", CHANNEL)
+    with bus, daemon(tmp_path) as child:
+        for frame in ("0A2#0000000000000000", "0A2#00", "7AA#DEADBEEF", "0A2#R", "1FFFFFFF#01"):
+            cansend(frame)
+        for _ in range(20):
+            next_limit(bus)
+        assert child.running
+
+
+def test_it_outlives_its_interface_going_down_and_up(tmp_path: Path, vcan0: Interface) -> None:
+    with daemon(tmp_path) as child:
+        vcan0.down()
+        vcan0.up()
+        bus, _ = open_bus("socketcan", CHANNEL)
+        with bus:
+            next_limit(bus)
+        assert child.running
+
+
+def test_it_finds_its_interface_again_after_it_was_removed(
+    tmp_path: Path, vcan0: Interface
+) -> None:
+    with daemon(tmp_path) as child:
+        vcan0.remove()
+        vcan0.add()
+        bus, _ = open_bus("socketcan", CHANNEL)
+        with bus:
+            next_limit(bus)
+        assert child.running

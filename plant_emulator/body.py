@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from plant_emulator.bounds import NonNegative, Positive, Table
 from plant_emulator.compiled import compiled
+from tcs_hil.signals import Pair
 
 GRAVITY_MPS2 = 9.81
 
@@ -58,32 +59,22 @@ def sprung(body: Body) -> Sprung:
     """Take the wheels away from the whole car: mass and moments of the rest."""
     axle_kg = 2.0 * body.unsprung_mass_kg
     mass_kg = body.mass_kg - 2.0 * axle_kg
-    behind_m = (
-        body.mass_kg * body.cg_behind_front_axle_m - axle_kg * body.wheelbase_m
-    ) / mass_kg
+    behind_m = (body.mass_kg * body.cg_behind_front_axle_m - axle_kg * body.wheelbase_m) / mass_kg
     height_m = (body.mass_kg * body.cg_height_m - 2.0 * axle_kg * body.wheel_radius_m) / mass_kg
-    return Sprung(
-        mass_kg, behind_m, body.wheelbase_m - behind_m, height_m - body.wheel_radius_m
-    )
+    return Sprung(mass_kg, behind_m, body.wheelbase_m - behind_m, height_m - body.wheel_radius_m)
 
 
 @compiled
-def suspension(
-    body: Body, part: Sprung, heave: tuple[float, float], pitch: tuple[float, float]
-) -> tuple[float, float]:
+def suspension(body: Body, part: Sprung, heave: Pair, pitch: Pair) -> Pair:
     """Force of the front and the rear axle's springs and dampers beyond the static one, N, up.
 
     ``heave`` is (m, m/s) up, ``pitch`` (rad, rad/s) nose up, both from the level
     static position.
     """
-    front_m, front_mps = (
-        heave[0] + part.behind_front_axle_m * pitch[0],
-        heave[1] + part.behind_front_axle_m * pitch[1],
-    )
-    rear_m, rear_mps = (
-        heave[0] - part.before_rear_axle_m * pitch[0],
-        heave[1] - part.before_rear_axle_m * pitch[1],
-    )
+    front_m = heave[0] + part.behind_front_axle_m * pitch[0]
+    front_mps = heave[1] + part.behind_front_axle_m * pitch[1]
+    rear_m = heave[0] - part.before_rear_axle_m * pitch[0]
+    rear_mps = heave[1] - part.before_rear_axle_m * pitch[1]
     return (
         -body.front_stiffness_npm * front_m - body.front_damping_nspm * front_mps,
         -body.rear_stiffness_npm * rear_m - body.rear_damping_nspm * rear_mps,
@@ -91,12 +82,17 @@ def suspension(
 
 
 @compiled
-def wheel_loads(body: Body, extra_n: tuple[float, float], grade_cos: float) -> tuple[float, float]:
-    """Load on one front and one rear wheel, N, never negative."""
+def wheel_loads(body: Body, front_n: float, rear_n: float, grade_cos: float) -> Pair:
+    """Load on one front and one rear wheel, N, given the axles' forces beyond the static ones.
+
+    Never negative: a wheel does not pull at the road.
+    """
     weight_n = body.mass_kg * GRAVITY_MPS2 * grade_cos
-    front_n = weight_n * (1.0 - body.cg_behind_front_axle_m / body.wheelbase_m) + extra_n[0]
-    rear_n = weight_n * body.cg_behind_front_axle_m / body.wheelbase_m + extra_n[1]
-    return max(0.5 * front_n, 0.0), max(0.5 * rear_n, 0.0)
+    rear_share = body.cg_behind_front_axle_m / body.wheelbase_m
+    return (
+        max(0.5 * (weight_n * (1.0 - rear_share) + front_n), 0.0),
+        max(0.5 * (weight_n * rear_share + rear_n), 0.0),
+    )
 
 
 @compiled

@@ -7,12 +7,35 @@ the struct, and run on the struct itself when called through ``.py_func``.
 
 from __future__ import annotations
 
+import hashlib
+import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import msgspec
 import numba
 import numpy as np
+
+PACKAGE = Path(__file__).parent
+
+
+def _cache_folder() -> Path:
+    """Where machine code is kept: one folder per state of this package's sources.
+
+    numba itself looks only at the file a function stands in, and would run a
+    stale copy of what that function calls.
+    """
+    digest = hashlib.sha256()
+    for source in sorted(PACKAGE.glob("*.py")):
+        digest.update(source.read_bytes())
+    home = PACKAGE / "__pycache__"
+    if not os.access(PACKAGE, os.W_OK):
+        home = Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "plant-emulator"
+    return home / f"numba-{digest.hexdigest()[:16]}"
+
+
+numba.config.CACHE_DIR = numba.config.CACHE_DIR or str(_cache_folder())
 
 F = TypeVar("F", bound=Callable[..., object])
 S = TypeVar("S", bound=msgspec.Struct)

@@ -39,8 +39,10 @@ def attainable(driveline: Driveline, asked_nm: float, speed_radps: float) -> flo
     """Torque the inverter aims at: the asked one within torque, power and speed limits."""
     driven = max(speed_radps, 1.0)
     most = min(driveline.motor_torque_max_nm, driveline.motor_power_max_w / driven)
-    room = (driveline.motor_speed_max_radps - speed_radps) / driveline.motor_speed_max_radps
-    most *= min(max(room / SPEED_FADE_RATIO, 0.0), 1.0)
+    room = driveline.motor_speed_max_radps - speed_radps
+    fade = SPEED_FADE_RATIO * driveline.motor_speed_max_radps
+    if room < fade:
+        most *= max(room / fade, 0.0)
     return min(max(asked_nm, -most), most)
 
 

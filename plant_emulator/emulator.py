@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections import deque
+from typing import Protocol
 
 from plant_emulator.plant import Plant
 from plant_emulator.recording import TruthRecorder
-from tcs_hil.canbus.port import CanPort
 from tcs_hil.canbus.vehicle_node import VehicleNode
 from tcs_hil.signals import TorqueLimits
 
 PERIOD_NS = 2_000_000
+
+
+class Sender(Protocol):
+    """Where frames go: a port of a bus, or a service in the same process."""
+
+    def send(self, frame_id: int, data: bytes) -> bool:
+        """Send one frame; False if it was not taken."""
+        ...
 
 
 class Emulator:
@@ -21,7 +29,7 @@ class Emulator:
     """
 
     def __init__(
-        self, plant: Plant, node: VehicleNode, port: CanPort, recorder: TruthRecorder
+        self, plant: Plant, node: VehicleNode, port: Sender, recorder: TruthRecorder
     ) -> None:
         self.plant = plant
         self._node = node
@@ -35,7 +43,7 @@ class Emulator:
         """Sample the sensors, send every frame that is due and put the truth on record."""
         for frame_id, data in sorted(self._node.frames(self.plant.signals(), self._now_ns)):
             self._port.send(frame_id, data)
-        self._recorder.add(self.plant.truth)
+        self._recorder.add(self.plant.row)
 
     def send_tick(self, tick: int) -> None:
         """Tell the service that everything of this tick has been sent (lockstep)."""

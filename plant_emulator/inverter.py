@@ -7,30 +7,33 @@ from typing import NamedTuple
 
 from plant_emulator.compiled import compiled
 from plant_emulator.driver import Line
-from tcs_hil.signals import NO_LIMIT, TorqueLimits
+from tcs_hil.signals import NO_LIMIT, Pair, TorqueLimits
 
 HOLD_S = 0.010
 RELEASE_NMPS = 500.0
 
 
 class Demand(NamedTuple):
-    """What both motors are asked for over one piece of time, as straight lines from its start."""
+    """What each motor is asked for over one piece of time, as straight lines from its start."""
 
-    request_nm: float
-    request_nmps: float
-    limit_left_nm: float
-    limit_right_nm: float
-    limit_nmps: float
+    request_nm: Pair
+    request_nmps: Pair
+    limit_nm: Pair
+    limit_nmps: Pair
 
 
 @compiled
-def demanded(demand: Demand, elapsed_s: float) -> tuple[float, float]:
+def demanded(demand: Demand, elapsed_s: float) -> Pair:
     """Torque asked of the left and the right motor: the lower of request and limit."""
-    request_nm = demand.request_nm + demand.request_nmps * elapsed_s
-    released_nm = demand.limit_nmps * elapsed_s
     return (
-        min(request_nm, demand.limit_left_nm + released_nm),
-        min(request_nm, demand.limit_right_nm + released_nm),
+        min(
+            demand.request_nm[0] + demand.request_nmps[0] * elapsed_s,
+            demand.limit_nm[0] + demand.limit_nmps[0] * elapsed_s,
+        ),
+        min(
+            demand.request_nm[1] + demand.request_nmps[1] * elapsed_s,
+            demand.limit_nm[1] + demand.limit_nmps[1] * elapsed_s,
+        ),
     )
 
 
@@ -59,5 +62,10 @@ class LimitKeeper:
         """Request and limits from ``time_s`` until `next_change`."""
         late_s = max(time_s - self._expiry_s, 0.0)
         slope = RELEASE_NMPS if time_s >= self._expiry_s else 0.0
-        left_nm, right_nm = (limit + RELEASE_NMPS * late_s for limit in self._limits)
-        return Demand(request.value, request.slope, left_nm, right_nm, slope)
+        left_nm, right_nm = self._limits
+        return Demand(
+            (request.value, request.value),
+            (request.slope, request.slope),
+            (left_nm + RELEASE_NMPS * late_s, right_nm + RELEASE_NMPS * late_s),
+            (slope, slope),
+        )

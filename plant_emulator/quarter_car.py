@@ -16,10 +16,26 @@ from plant_emulator.bounds import Positive, Table
 from plant_emulator.compiled import compiled, record
 from plant_emulator.inverter import Demand, demanded
 from plant_emulator.road import MU_LEFT, MU_RIGHT, patch_at
-from plant_emulator.truth import Truth
+from plant_emulator.runge_kutta import STAGES, blend, conclude, steps_for
+from plant_emulator.truth import (
+    ACCEL,
+    BODY_SPEED,
+    DISTANCE,
+    FORCE,
+    LOAD,
+    MOTOR_SPEED,
+    MOTOR_TORQUE,
+    MU,
+    SHAFT_TORQUE,
+    SLIP_RATIO,
+    SLIP_SPEED,
+    SPECIFIC_FORCE,
+    TYRE_SLIP,
+    WHEEL_SPEED,
+    Row,
+)
 
 GRAVITY_MPS2 = 9.81
-MAX_STEP_S = 1e-4
 
 SPEED, WHEEL_LEFT, WHEEL_RIGHT, POSITION = range(4)
 
@@ -85,23 +101,21 @@ def advance(
 
     Friction is that of the patch at the beginning of a step.
     """
-    steps = max(1, math.ceil(duration_s / MAX_STEP_S - 1e-6))
+    steps = steps_for(duration_s)
     h = duration_s / steps
-    rates = np.empty((4, state.size))
+    rates, trial = np.zeros((4, state.size)), np.empty(state.size)
     for step in range(steps):
         patch = road[patch_at(road, state[POSITION])]
         mu = (patch[MU_LEFT], patch[MU_RIGHT])
-        start_s = step * h
-        middle_nm = demanded(demand, start_s + 0.5 * h)
-        derivative(state, demanded(demand, start_s), mu, car, rates[0])
-        derivative(state + 0.5 * h * rates[0], middle_nm, mu, car, rates[1])
-        derivative(state + 0.5 * h * rates[1], middle_nm, mu, car, rates[2])
-        derivative(state + h * rates[2], demanded(demand, start_s + h), mu, car, rates[3])
-        state += h / 6.0 * (rates[0] + 2.0 * rates[1] + 2.0 * rates[2] + rates[3])
+        for stage in range(4):
+            offset_s = STAGES[stage] * h
+            blend(trial, state, offset_s, rates[stage - 1])
+            derivative(trial, demanded(demand, step * h + offset_s), mu, car, rates[stage])
+        conclude(state, h, rates)
 
 
 class QuarterCarPlant:
-    """State of a quarter car on a road."""
+    """State of a quarter car on a road; its sensors are ideal."""
 
     def __init__(self, car: QuarterCar, road: NDArray[np.float64], speed_mps: float) -> None:
         self._car = record(car)
@@ -109,50 +123,40 @@ class QuarterCarPlant:
         omega = speed_mps / car.wheel_radius_m
         self._state = np.array([speed_mps, omega, omega, 0.0])
 
-    def advance(self, demand: Demand, duration_s: float) -> None:
+    def advance(self, demand: Demand, _time_s: float, duration_s: float) -> None:
         """Integrate over ``duration_s``."""
         advance(self._state, demand, self._car, self._road, duration_s)
 
-    def truth(self, time_s: float, demand: Demand) -> Truth:
-        """Every state now; what a quarter car has not (shaft, pitch, own rear load) is zero."""
-        return _truth(time_s, self._state, demand, self._car, self._road)
+    def observe(self, demand: Demand, row: Row) -> None:
+        """Fill in every state; what a quarter car has not (shaft, pitch, rear force) stays zero."""
+        _observe(self._state, demand, self._car, self._road, row)
 
 
 @compiled
-def _truth(
-    time_s: float,
+def _observe(
     state: NDArray[np.float64],
     demand: Demand,
     car: QuarterCar,
     road: NDArray[np.float64],
-) -> Truth:
+    row: Row,
+) -> None:
     patch = road[patch_at(road, state[POSITION])]
-    mu = (patch[MU_LEFT], patch[MU_RIGHT])
-    speed, left, right = state[SPEED], state[WHEEL_LEFT], state[WHEEL_RIGHT]
-    radius, gear = car.wheel_radius_m, car.gear_ratio
-    kappa = (slip(car, left, speed), slip(car, right, speed), 0.0, 0.0)
-    force = (tyre_force(car, kappa[0], mu[0]), tyre_force(car, kappa[1], mu[1]), 0.0, 0.0)
     torque = demanded(demand, 0.0)
-    load_n = car.mass_kg * GRAVITY_MPS2 / 4.0
-    return Truth(
-        time_s,
-        state[POSITION],
-        speed,
-        2.0 / car.mass_kg * (force[0] + force[1]),
-        0.0,
-        0.0,
-        0.0,
-        demand.request_nm,
-        (demand.limit_left_nm, demand.limit_right_nm),
-        torque,
-        (gear * left, gear * right),
-        (0.0, 0.0),
-        (gear * torque[0], gear * torque[1]),
-        (left, right, speed / radius, speed / radius),
-        (left * radius - speed, right * radius - speed, 0.0, 0.0),
-        kappa,
-        kappa,
-        force,
-        (load_n, load_n, load_n, load_n),
-        (mu[0], mu[1], mu[0], mu[1]),
-    )
+    total_n = 0.0
+    for wheel in range(4):
+        driven, side = wheel < 2, wheel % 2
+        row[MU + wheel] = mu = patch[MU_LEFT + side]
+        row[LOAD + wheel] = car.mass_kg * GRAVITY_MPS2 / 4.0
+        rolling = state[SPEED] / car.wheel_radius_m
+        row[WHEEL_SPEED + wheel] = omega = state[WHEEL_LEFT + side] if driven else rolling
+        row[SLIP_SPEED + wheel] = omega * car.wheel_radius_m - state[SPEED]
+        row[SLIP_RATIO + wheel] = kappa = slip(car, omega, state[SPEED])
+        if driven:
+            row[TYRE_SLIP + wheel] = kappa
+            row[FORCE + wheel] = tyre_force(car, kappa, mu)
+            row[MOTOR_TORQUE + side] = torque[side]
+            row[MOTOR_SPEED + side] = car.gear_ratio * omega
+            row[SHAFT_TORQUE + side] = car.gear_ratio * torque[side]
+            total_n += row[FORCE + wheel]
+    row[DISTANCE], row[BODY_SPEED] = state[POSITION], state[SPEED]
+    row[ACCEL] = row[SPECIFIC_FORCE] = 2.0 / car.mass_kg * total_n

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_emulator.scenario import Scenario
-from plant_emulator.truth import TRUTH_DTYPE, Truth
+from plant_emulator.truth import ROW_SIZE, TRUTH_DTYPE, Row
 from tcs_hil.errors import ConfigError
 
 
@@ -25,15 +25,20 @@ class TruthRecorder:
     def __init__(self, path: Path | None, scenario: Scenario, period_s: float) -> None:
         self._path = path
         self._scenario = msgspec.json.encode(scenario).decode()
-        self._rows = np.zeros(math.ceil(scenario.duration_s / period_s) + 2, TRUTH_DTYPE)
+        self._rows = np.zeros((math.ceil(scenario.duration_s / period_s) + 2, ROW_SIZE))
         self._count = 0
         self.save()  # a path that cannot be written is refused before the run, not after it
 
-    def add(self, truth: Truth) -> None:
+    def add(self, row: Row) -> None:
         """Append one row; rows beyond the scenario's duration are dropped."""
-        if self._count < self._rows.size:
-            self._rows[self._count] = truth
+        if self._count < len(self._rows):
+            self._rows[self._count] = row
             self._count += 1
+
+    @property
+    def rows(self) -> NDArray[np.void]:
+        """What was collected so far, in the order of time."""
+        return self._rows[: self._count].view(TRUTH_DTYPE)[:, 0]
 
     def save(self, jitter_ns: NDArray[np.int64] | None = None) -> None:
         """Write what was collected; nothing without a path.
@@ -48,7 +53,7 @@ class TruthRecorder:
             with self._path.open("wb") as file:
                 np.savez(
                     file,
-                    truth=self._rows[: self._count],
+                    truth=self.rows,
                     jitter_ns=jitter_ns,
                     scenario=np.array(self._scenario),
                 )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import math
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from msgspec import Meta
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from plant_emulator.bounds import NonNegative, Table
 from plant_emulator.compiled import compiled
+from tcs_hil.signals import FourWheels
 
 Friction = Annotated[float, Meta(gt=0.0, le=1.5)]
 Grade = Annotated[float, Meta(ge=-0.2, le=0.2)]
@@ -59,3 +61,27 @@ def patch_at(road: NDArray[np.float64], position_m: float) -> int:
     while row + 1 < road.shape[0] and position_m >= road[row + 1, FROM_M]:
         row += 1
     return row
+
+
+class Site(NamedTuple):
+    """The road under the car."""
+
+    mu: FourWheels
+    peak_only: tuple[bool, bool]  # front, rear
+    grade_sin: float
+    grade_cos: float
+
+
+@compiled
+def site_at(road: NDArray[np.float64], position_m: float, wheelbase_m: float) -> Site:
+    """Friction under each wheel, the rear ones a wheelbase behind, and the mean grade."""
+    front = road[patch_at(road, position_m)]
+    rear = road[patch_at(road, position_m - wheelbase_m)]
+    rise = 0.5 * (front[GRADE] + rear[GRADE])
+    grade_cos = 1.0 / math.sqrt(1.0 + rise * rise)
+    return Site(
+        (front[MU_LEFT], front[MU_RIGHT], rear[MU_LEFT], rear[MU_RIGHT]),
+        (front[PEAK_ONLY] > 0.0, rear[PEAK_ONLY] > 0.0),
+        rise * grade_cos,
+        grade_cos,
+    )

@@ -9,10 +9,15 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from plant_emulator.body import Body
 from plant_emulator.bounds import NonNegative, Positive, Table
+from plant_emulator.driveline import Driveline
 from plant_emulator.driver import Driver
 from plant_emulator.quarter_car import QuarterCar
 from plant_emulator.road import Patch
+from plant_emulator.sensors import Sensors
+from plant_emulator.tyre import Tyre
+from plant_emulator.whole_car import WholeCar
 from tcs_hil.config import read_toml
 from tcs_hil.errors import ConfigError
 
@@ -26,6 +31,14 @@ class VehicleTable(Table, frozen=True):
 
     variant: Variant = "vehicle"
     quarter_car: QuarterCar = QuarterCar()
+    body: Body = Body()
+    tyre: Tyre = Tyre()
+    driveline: Driveline = Driveline()
+
+    @property
+    def whole(self) -> WholeCar:
+        """Parameters of the whole car."""
+        return WholeCar(body=self.body, tyre=self.tyre, driveline=self.driveline)
 
 
 class ControllerTable(Table, frozen=True):
@@ -63,6 +76,7 @@ class Scenario(Table, frozen=True):
     start_speed_kmph: Annotated[float, Meta(ge=0.0, le=200.0)] = 0.0
     vehicle: VehicleTable = VehicleTable()
     road: Annotated[tuple[Patch, ...], Meta(min_length=1)] = (Patch(mu=1.0),)
+    sensors: Sensors = Sensors()
     controller: ControllerTable = ControllerTable()
     expect: tuple[Expect, ...] = ()
 

@@ -56,10 +56,13 @@ class Tyre(Table, frozen=True):
 
 
 @compiled
-def slip_stiffness(tyre: Tyre, load_n: float) -> float:
-    """K_x = dF_x / dkappa at the origin, N per unit slip, on mu = 1."""
-    dfz = load_n / tyre.fnomin - 1.0
-    return load_n * (tyre.pkx1 + tyre.pkx2 * dfz) * math.exp(tyre.pkx3 * dfz)
+def slip_stiffness(tyre: Tyre, load_n: float, dfz: float) -> float:
+    """K_x = dF_x / dkappa at the origin, N per unit slip, on mu = 1.
+
+    ``dfz`` is the load relative to nominal, minus one.
+    """
+    stiffness_n = load_n * (tyre.pkx1 + tyre.pkx2 * dfz)
+    return stiffness_n * math.exp(tyre.pkx3 * dfz) if tyre.pkx3 != 0.0 else stiffness_n
 
 
 @compiled
@@ -74,51 +77,41 @@ def tyre_force(tyre: Tyre, kappa: float, load_n: float, mu: float, peak_only: bo
     dfz = load_n / tyre.fnomin - 1.0
     of_peak, of_curve = (mu, 1.0) if peak_only else (1.0, mu)
     d = load_n * (tyre.pdx1 + tyre.pdx2 * dfz) * of_peak
-    b = slip_stiffness(tyre, load_n) / (tyre.pcx1 * d)
+    b = slip_stiffness(tyre, load_n, dfz) / (tyre.pcx1 * d)
     shifted = kappa + tyre.phx1 + tyre.phx2 * dfz
-    direction = math.copysign(1.0, shifted)
-    e = (tyre.pex1 + tyre.pex2 * dfz + tyre.pex3 * dfz * dfz) * (1.0 - tyre.pex4 * direction)
     x = b * shifted
-    bent = x - min(e, 1.0) * (x - math.atan(x)) if e != 0.0 else x
+    e = tyre.pex1 + tyre.pex2 * dfz + tyre.pex3 * dfz * dfz
+    if e != 0.0:
+        e = min(e * (1.0 - tyre.pex4 * math.copysign(1.0, shifted)), 1.0)
+        x -= e * (x - math.atan(x))
     offset = load_n * (tyre.pvx1 + tyre.pvx2 * dfz) * of_peak
-    return of_curve * (d * math.sin(tyre.pcx1 * math.atan(bent)) + offset)
+    return of_curve * (d * math.sin(tyre.pcx1 * math.atan(x)) + offset)
 
 
 @compiled
-def deflection_rate(tyre: Tyre, deflection_m: float, rim_mps: float, speed_mps: float) -> float:
-    """Rate of the contact patch's deflection, m/s.
-
-    At rest it settles where deflection / relaxation length is the slip ratio,
-    by the rim's speed in driving and by the car's in braking.
-    """
-    return rim_mps - speed_mps - _rolling(rim_mps, speed_mps) * deflection_m / tyre.relaxation_m
+def rolling_speed(rim_mps: float, speed_mps: float) -> float:
+    """Speed by which slip is defined, m/s: the rim's in driving, the car's in braking."""
+    return max(abs(rim_mps), abs(speed_mps))
 
 
 @compiled
-def transient_slip(
-    tyre: Tyre, deflection_m: float, rim_mps: float, speed_mps: float, stiffness_n: float
-) -> float:
-    """Slip ratio that makes the force: the lagged one, damped near standstill."""
-    kappa = deflection_m / tyre.relaxation_m
-    rolling_mps = _rolling(rim_mps, speed_mps)
-    if rolling_mps < LOW_SPEED_MPS:
-        fade = 0.5 * (1.0 + math.cos(math.pi * rolling_mps / LOW_SPEED_MPS))
-        kappa += fade * tyre.low_speed_damping_nspm * (rim_mps - speed_mps) / stiffness_n
-    return kappa
+def low_speed_slip(tyre: Tyre, slip_mps: float, rolling_mps: float, load_n: float) -> float:
+    """Slip ratio whose force damps the contact patch near standstill; zero above 0.5 m/s."""
+    if rolling_mps >= LOW_SPEED_MPS:
+        return 0.0
+    fade = 0.5 * (1.0 + math.cos(math.pi * rolling_mps / LOW_SPEED_MPS))
+    stiffness_n = slip_stiffness(tyre, load_n, load_n / tyre.fnomin - 1.0)
+    return fade * tyre.low_speed_damping_nspm * slip_mps / max(stiffness_n, 1.0)
 
 
 @compiled
 def rolling_resistance(tyre: Tyre, rim_mps: float, load_n: float, radius_m: float) -> float:
     """Moment against rolling, Nm; it fades within 0.1 m/s around standstill."""
-    return tyre.qsy1 * load_n * radius_m * math.tanh(rim_mps / ROLLING_SPEED_MPS)
+    smooth_mps = math.sqrt(rim_mps * rim_mps + ROLLING_SPEED_MPS * ROLLING_SPEED_MPS)
+    return tyre.qsy1 * load_n * radius_m * rim_mps / smooth_mps
 
 
 @compiled
 def modified_slip(rim_mps: float, speed_mps: float) -> float:
     """Slip ratio of the paper, Eq. (slip_mod) with epsilon = 0.1 (m/s)^2."""
     return (rim_mps - speed_mps) * rim_mps / (rim_mps * rim_mps + 0.1)
-
-
-@compiled
-def _rolling(rim_mps: float, speed_mps: float) -> float:
-    return max(abs(rim_mps), abs(speed_mps))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,19 +20,28 @@ from plant_emulator.body import (
 from plant_emulator.bounds import Table
 from plant_emulator.compiled import compiled
 from plant_emulator.driveline import Driveline, attainable, shaft_torque, torque_rate
-from plant_emulator.road import GRADE, MU_LEFT, MU_RIGHT, PEAK_ONLY, patch_at
+from plant_emulator.road import Site
+from plant_emulator.truth import (
+    ACCEL,
+    BRAKE_TORQUE,
+    FORCE,
+    LOAD,
+    SHAFT_TORQUE,
+    TYRE_SLIP,
+    Row,
+)
+from plant_emulator.truth import MOTOR_TORQUE as MOTOR_NM
 from plant_emulator.tyre import (
     Tyre,
-    deflection_rate,
+    low_speed_slip,
     modified_slip,
     rolling_resistance,
-    slip_stiffness,
-    transient_slip,
+    rolling_speed,
     tyre_force,
 )
-from tcs_hil.signals import FourWheels, Pair
+from tcs_hil.signals import Pair
 
-State = NDArray[np.float64]  # (SIZE,)
+Array = NDArray[np.float64]
 
 SPEED, POSITION, HEAVE, HEAVE_RATE, PITCH, PITCH_RATE = range(6)
 WHEEL, ANGLE, DEFLECTION, HELD_AT = 6, 10, 14, 18  # four each
@@ -49,163 +57,92 @@ class WholeCar(Table, frozen=True):
     driveline: Driveline = Driveline()
 
 
-class Site(NamedTuple):
-    """The road under the car."""
-
-    mu: FourWheels
-    peak_only: tuple[bool, bool]  # front, rear
-    grade_sin: float
-    grade_cos: float
-
-
-class Corner(NamedTuple):
-    """What acts on one wheel from outside its half-shaft."""
-
-    slip_ratio: float
-    tyre_n: float
-    brake_nm: float
-    outer_nm: float  # all but the shaft, forwards positive
-
-
-class Forces(NamedTuple):
-    """Everything that acts, at one instant."""
-
-    load_n: Pair  # one front, one rear wheel
-    corners: tuple[Corner, Corner, Corner, Corner]
-    motor_nm: Pair
-    aim_nm: Pair
-    shaft_nm: Pair
-    axle_n: Pair  # suspension, beyond the static force
-    accel_mps2: float
-
-
 @compiled
-def site_at(road: NDArray[np.float64], position_m: float, wheelbase_m: float) -> Site:
-    """Friction under each wheel (rear ones a wheelbase behind) and the mean grade."""
-    front = road[patch_at(road, position_m)]
-    rear = road[patch_at(road, position_m - wheelbase_m)]
-    angle = math.atan(0.5 * (front[GRADE] + rear[GRADE]))
-    return Site(
-        (front[MU_LEFT], front[MU_RIGHT], rear[MU_LEFT], rear[MU_RIGHT]),
-        (front[PEAK_ONLY] > 0.0, rear[PEAK_ONLY] > 0.0),
-        math.sin(angle),
-        math.cos(angle),
-    )
+def derivative(
+    state: Array, asked_nm: Pair, site: Site, car: WholeCar, row: Row, rate: Array
+) -> None:
+    """Write what acts now into ``row`` of the truth and the derivative of ``state`` into ``rate``.
 
-
-@compiled
-def _corner(state: State, car: WholeCar, site: Site, wheel: int, load_n: float) -> Corner:
-    speed, omega = state[SPEED], state[WHEEL + wheel]
-    rim, mu, peak_only = omega * car.body.wheel_radius_m, site.mu[wheel], site.peak_only[wheel // 2]
-    if car.tyre.relaxation_m > 0.0:
-        stiffness_n = slip_stiffness(car.tyre, load_n) * (1.0 if peak_only else mu)
-        kappa = transient_slip(car.tyre, state[DEFLECTION + wheel], rim, speed, stiffness_n)
-    else:
-        kappa = modified_slip(rim, speed)
-    force = tyre_force(car.tyre, kappa, load_n, mu, peak_only)
-    brake = 0.0
-    if not math.isnan(state[HELD_AT + wheel]):
-        brake = hold_torque(car.body, state[ANGLE + wheel] - state[HELD_AT + wheel], omega)
-    resistance = rolling_resistance(car.tyre, rim, load_n, car.body.wheel_radius_m)
-    return Corner(kappa, force, brake, brake - force * car.body.wheel_radius_m - resistance)
-
-
-@compiled
-def _motor(state: State, line: Driveline, side: int, asked_nm: float) -> Pair:
-    """Air-gap torque and the torque it heads for."""
-    aim = attainable(line, asked_nm, state[MOTOR_SPEED + side])
-    return (state[MOTOR_TORQUE + side] if line.motor_lag_s > 0.0 else aim), aim
-
-
-@compiled
-def _shaft(state: State, car: WholeCar, side: int, motor_nm: float, outer_nm: float) -> float:
-    """Torque a half-shaft puts on its wheel; a rigid one as much as both inertias together need."""
-    line, inertia = car.driveline, car.body.wheel_inertia_kgm2
-    if line.shaft_stiffness_nmprad > 0.0:
-        slow = state[MOTOR_SPEED + side] / line.gear_ratio - state[WHEEL + side]
-        return shaft_torque(line, state[TWIST + side], slow)
-    reflected = line.gear_ratio * line.gear_ratio * line.motor_inertia_kgm2
-    omega_rate = (line.gear_ratio * motor_nm + outer_nm) / (inertia + reflected)
-    return line.gear_ratio * motor_nm - reflected * omega_rate
-
-
-@compiled
-def forces(state: State, asked_nm: Pair, site: Site, car: WholeCar) -> Forces:
-    """Everything that acts on the car in ``state``."""
-    body = car.body
-    axle_n = (0.0, 0.0)
-    if body.load_transfer:
-        heave, pitch = (state[HEAVE], state[HEAVE_RATE]), (state[PITCH], state[PITCH_RATE])
-        axle_n = suspension(body, sprung(body), heave, pitch)
-    load_n = wheel_loads(body, axle_n, site.grade_cos)
-    left, right = _corner(state, car, site, 0, load_n[0]), _corner(state, car, site, 1, load_n[0])
-    corners = (
-        left,
-        right,
-        _corner(state, car, site, 2, load_n[1]),
-        _corner(state, car, site, 3, load_n[1]),
-    )
-    left_nm, left_aim = _motor(state, car.driveline, 0, asked_nm[0])
-    right_nm, right_aim = _motor(state, car.driveline, 1, asked_nm[1])
-    shaft_nm = (
-        _shaft(state, car, 0, left_nm, left.outer_nm),
-        _shaft(state, car, 1, right_nm, right.outer_nm),
-    )
-    push_n = left.tyre_n + right.tyre_n + corners[2].tyre_n + corners[3].tyre_n
-    accel = (push_n - drag(body, state[SPEED])) / body.mass_kg - GRAVITY_MPS2 * site.grade_sin
-    return Forces(
-        load_n, corners, (left_nm, right_nm), (left_aim, right_aim), shaft_nm, axle_n, accel
-    )
-
-
-@compiled
-def derivative(state: State, asked_nm: Pair, site: Site, car: WholeCar, rate: State) -> None:
-    """Write the time derivative of ``state`` into ``rate``."""
-    acting = forces(state, asked_nm, site, car)
-    rate[:] = 0.0
-    rate[SPEED] = acting.accel_mps2
-    rate[POSITION] = state[SPEED]
-    if car.body.load_transfer:
-        _body_rates(state, acting, site, car.body, rate)
-    _wheel_rates(state, acting, car, rate)
-    for side in range(2):
-        line, shaft_nm = car.driveline, acting.shaft_nm[side]
-        if line.motor_lag_s > 0.0:
-            rate[MOTOR_TORQUE + side] = torque_rate(line, acting.aim_nm[side], acting.motor_nm[side])
-        rate[MOTOR_SPEED + side] = (
-            acting.motor_nm[side] - shaft_nm / line.gear_ratio
-        ) / line.motor_inertia_kgm2
-        rate[TWIST + side] = state[MOTOR_SPEED + side] / line.gear_ratio - state[WHEEL + side]
-
-
-@compiled
-def _wheel_rates(state: State, acting: Forces, car: WholeCar, rate: State) -> None:
-    radius = car.body.wheel_radius_m
+    Order matters: each part reads what those before it have written.
+    """
+    axle_n = _suspension(state, car.body)
+    load_n = wheel_loads(car.body, axle_n[0], axle_n[1], site.grade_cos)
+    force_n = -drag(car.body, state[SPEED])
     for wheel in range(4):
-        omega = state[WHEEL + wheel]
-        shaft_nm = acting.shaft_nm[wheel] if wheel < 2 else 0.0
-        rate[WHEEL + wheel] = (
-            shaft_nm + acting.corners[wheel].outer_nm
-        ) / car.body.wheel_inertia_kgm2
-        rate[ANGLE + wheel] = omega
-        if car.tyre.relaxation_m > 0.0:
-            rate[DEFLECTION + wheel] = deflection_rate(
-                car.tyre, state[DEFLECTION + wheel], omega * radius, state[SPEED]
-            )
+        row[LOAD + wheel] = load_n[wheel // 2]
+        _touch(state, site, car, wheel, row, rate)
+        force_n += row[FORCE + wheel]
+    for side in range(2):
+        _drive(state, car, side, asked_nm[side], row, rate)
+    row[ACCEL] = force_n / car.body.mass_kg - GRAVITY_MPS2 * site.grade_sin
+    rate[SPEED], rate[POSITION] = row[ACCEL], state[SPEED]
+    if car.body.load_transfer:
+        _bounce(state, site, car, axle_n, row, rate)
 
 
 @compiled
-def _body_rates(state: State, acting: Forces, site: Site, body: Body, rate: State) -> None:
-    part = sprung(body)
-    front_n, rear_n = acting.axle_n
-    push_n = part.mass_kg * (acting.accel_mps2 + GRAVITY_MPS2 * site.grade_sin)
-    push_n += drag(body, state[SPEED])
-    reaction_nm = acting.shaft_nm[0] + acting.shaft_nm[1]
-    for corner in acting.corners:
-        reaction_nm += corner.brake_nm
+def _suspension(state: Array, body: Body) -> Pair:
+    if not body.load_transfer:
+        return 0.0, 0.0
+    heave, pitch = (state[HEAVE], state[HEAVE_RATE]), (state[PITCH], state[PITCH_RATE])
+    return suspension(body, sprung(body), heave, pitch)
+
+
+@compiled
+def _touch(state: Array, site: Site, car: WholeCar, wheel: int, row: Row, rate: Array) -> None:
+    """Tyre force, brake and rolling resistance of one wheel, and what they do to it."""
+    radius, omega, load_n = car.body.wheel_radius_m, state[WHEEL + wheel], row[LOAD + wheel]
+    rim, mu, peak_only = omega * radius, site.mu[wheel], site.peak_only[wheel // 2]
+    if car.tyre.relaxation_m > 0.0:
+        slip_mps, rolling_mps = rim - state[SPEED], rolling_speed(rim, state[SPEED])
+        kappa = state[DEFLECTION + wheel] / car.tyre.relaxation_m
+        rate[DEFLECTION + wheel] = slip_mps - rolling_mps * kappa
+        kappa += low_speed_slip(car.tyre, slip_mps, rolling_mps, load_n)
+    else:
+        kappa = modified_slip(rim, state[SPEED])
+    force_n = tyre_force(car.tyre, kappa, load_n, mu, peak_only)
+    brake_nm = 0.0
+    if not math.isnan(state[HELD_AT + wheel]):
+        brake_nm = hold_torque(car.body, state[ANGLE + wheel] - state[HELD_AT + wheel], omega)
+    resistance_nm = rolling_resistance(car.tyre, rim, load_n, radius)
+    row[TYRE_SLIP + wheel], row[FORCE + wheel], row[BRAKE_TORQUE + wheel] = kappa, force_n, brake_nm
+    torque_nm = brake_nm - resistance_nm - force_n * radius
+    rate[WHEEL + wheel] = torque_nm / car.body.wheel_inertia_kgm2
+    rate[ANGLE + wheel] = omega
+
+
+@compiled
+def _drive(state: Array, car: WholeCar, side: int, asked_nm: float, row: Row, rate: Array) -> None:
+    """Motor and half-shaft of one side, and what they do to its wheel."""
+    line, motor, gear = car.driveline, state[MOTOR_SPEED + side], car.driveline.gear_ratio
+    wheel_kgm2 = car.body.wheel_inertia_kgm2
+    aim_nm = attainable(line, asked_nm, motor)
+    torque_nm = state[MOTOR_TORQUE + side] if line.motor_lag_s > 0.0 else aim_nm
+    rate[TWIST + side] = motor / gear - state[WHEEL + side]
+    if line.shaft_stiffness_nmprad > 0.0:
+        shaft_nm = shaft_torque(line, state[TWIST + side], rate[TWIST + side])
+    else:  # a rigid shaft carries what both inertias together need
+        motor_kgm2 = gear * gear * line.motor_inertia_kgm2
+        outer_nm = wheel_kgm2 * rate[WHEEL + side]
+        omega_rate = (gear * torque_nm + outer_nm) / (wheel_kgm2 + motor_kgm2)
+        shaft_nm = gear * torque_nm - motor_kgm2 * omega_rate
+    rate[WHEEL + side] += shaft_nm / wheel_kgm2
+    rate[MOTOR_SPEED + side] = (torque_nm - shaft_nm / gear) / line.motor_inertia_kgm2
+    if line.motor_lag_s > 0.0:
+        rate[MOTOR_TORQUE + side] = torque_rate(line, aim_nm, torque_nm)
+    row[MOTOR_NM + side], row[SHAFT_TORQUE + side] = torque_nm, shaft_nm
+
+
+@compiled
+def _bounce(state: Array, site: Site, car: WholeCar, axle_n: Pair, row: Row, rate: Array) -> None:
+    """Heave and pitch of the sprung mass."""
+    body, part = car.body, sprung(car.body)
+    push_n = part.mass_kg * (row[ACCEL] + GRAVITY_MPS2 * site.grade_sin) + drag(body, state[SPEED])
+    reaction_nm = row[SHAFT_TORQUE] + row[SHAFT_TORQUE + 1]
+    for wheel in range(4):
+        reaction_nm += row[BRAKE_TORQUE + wheel]
     moment_nm = pitch_moment(part, push_n, reaction_nm)
-    moment_nm += part.behind_front_axle_m * front_n - part.before_rear_axle_m * rear_n
-    rate[HEAVE] = state[HEAVE_RATE]
-    rate[HEAVE_RATE] = (front_n + rear_n) / part.mass_kg
-    rate[PITCH] = state[PITCH_RATE]
+    moment_nm += part.behind_front_axle_m * axle_n[0] - part.before_rear_axle_m * axle_n[1]
+    rate[HEAVE], rate[PITCH] = state[HEAVE_RATE], state[PITCH_RATE]
+    rate[HEAVE_RATE] = (axle_n[0] + axle_n[1]) / part.mass_kg
     rate[PITCH_RATE] = moment_nm / body.pitch_inertia_kgm2

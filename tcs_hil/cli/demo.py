@@ -5,8 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
+import msgspec
+from rich.console import Console
+from rich.table import Table
 
 from tcs_hil.cli.options import json_option
+from tcs_hil.cli.progress import progress_bar
+from tcs_hil.hil.demo import run_demo
+from tcs_hil.hil.machine import describe_machine
+from tcs_hil.hil.page import write_page
+from tcs_hil.hil.table import COLUMNS, as_dict, row
 
 
 @click.command()
@@ -28,23 +36,12 @@ def command(output: Path, interface: str, channel: str, as_json: bool) -> None:
 
     Example: tcs-hil demo --output runs/demo
     """
-    from rich.console import Console
-    from rich.table import Table
-
-    from tcs_hil.cli.progress import progress_bar
-    from tcs_hil.hil.demo import run_demo
-    from tcs_hil.hil.machine import describe_machine
-    from tcs_hil.hil.page import write_page
-    from tcs_hil.hil.table import COLUMNS, as_dict, row
-
     output.mkdir(parents=True, exist_ok=True)
     with progress_bar("starting") as advance:
         demo = run_demo(output, interface, channel, advance)
     page = output / "index.html"
     write_page(page, demo)
     if as_json:
-        import msgspec
-
         click.echo(msgspec.json.encode([as_dict(outcome) for outcome in demo.outcomes]))
         return
     table = Table(title=f"{demo.bus}; {describe_machine()}")

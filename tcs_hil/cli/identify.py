@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
+import msgspec
+from rich.console import Console
+from rich.table import Table
 
 from tcs_hil.cli.options import json_option
-
-if TYPE_CHECKING:
-    from tcs_hil.model.evaluation import PredictionErrors
-    from tcs_hil.model.predictor import KoopmanPredictor
+from tcs_hil.cli.progress import progress_bar
+from tcs_hil.config import read_toml
+from tcs_hil.errors import ConfigError
+from tcs_hil.model.edmd import DEFAULT_SEED, IdentificationSettings, identify
+from tcs_hil.model.evaluation import PredictionErrors, figure1, prediction_errors
+from tcs_hil.model.predictor import KoopmanPredictor
 
 
 @click.command()
@@ -42,12 +46,6 @@ def command(
 
     Example: tcs-hil identify --output model.npz --figure prediction.png
     """
-    from tcs_hil.cli.progress import progress_bar
-    from tcs_hil.config import read_toml
-    from tcs_hil.errors import ConfigError
-    from tcs_hil.model.edmd import DEFAULT_SEED, IdentificationSettings, identify
-    from tcs_hil.model.evaluation import figure1, prediction_errors
-
     if not output.absolute().parent.is_dir():
         raise ConfigError(f"{output}: there is no such folder to write the model file into")
     settings = (
@@ -59,7 +57,7 @@ def command(
         predictor = identify(settings, DEFAULT_SEED if seed is None else seed, advance)
     predictor.save(output)
     if figure:
-        from tcs_hil.hil.figures import save_prediction_figure
+        from tcs_hil.hil.figures import save_prediction_figure  # noqa: PLC0415 - slow to load
 
         save_prediction_figure(figure, figure1(predictor))
     show(predictor, prediction_errors(predictor), output, as_json)
@@ -69,17 +67,15 @@ def show(
     predictor: KoopmanPredictor, errors: PredictionErrors, output: Path, as_json: bool
 ) -> None:
     """Print the figures that tell a good predictor from a bad one."""
-    import msgspec
-    from rich.console import Console
-    from rich.table import Table
-
     if as_json:
         provenance = msgspec.to_builtins(predictor.provenance)
         click.echo(
             msgspec.json.encode({"errors": errors, "provenance": provenance, "file": str(output)})
         )
         return
-    table = Table(title=f"{output}: {predictor.provenance.dictionary}, {len(predictor.a)} observables")
+    table = Table(
+        title=f"{output}: {predictor.provenance.dictionary}, {len(predictor.a)} observables"
+    )
     table.add_column("figure")
     table.add_column("value", justify="right")
     for name, value in (

@@ -6,7 +6,11 @@ from pathlib import Path
 
 import click
 
+from tcs_hil.canbus.bus import open_bus
 from tcs_hil.cli.options import bus_options
+from tcs_hil.hil.record import record
+from tcs_hil.runtime.notify import notify
+from tcs_hil.runtime.stop import StopRequest
 
 
 @click.command()
@@ -17,11 +21,6 @@ def command(file: Path, interface: str | None, channel: str | None, bitrate: int
 
     Example: tcs-hil record --channel vcan0 drive.blf
     """
-    from tcs_hil.canbus.bus import open_bus
-    from tcs_hil.hil.record import record
-    from tcs_hil.runtime.notify import notify
-    from tcs_hil.runtime.stop import StopRequest
-
     bus, description = open_bus(interface or "auto", channel or "vcan0", bitrate)
     click.echo(f"recording {description} into {file}")
     with bus, StopRequest() as stop:

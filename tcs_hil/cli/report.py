@@ -7,6 +7,9 @@ from pathlib import Path
 import click
 
 from tcs_hil.cli.options import json_option
+from tcs_hil.cli.summary import show_summary
+from tcs_hil.runtime.recording import read, read_info
+from tcs_hil.runtime.summary import summarise
 
 
 @click.command()
@@ -17,10 +20,6 @@ def command(recording: Path, as_json: bool) -> None:
 
     Example: tcs-hil report run.tcsrec
     """
-    from tcs_hil.cli.summary import show_summary
-    from tcs_hil.runtime.recording import read, read_info
-    from tcs_hil.runtime.summary import summarise
-
     if not as_json:
         info = read_info(recording)
         click.echo(f"{info.controller} on {info.bus}, {info.machine}")

@@ -6,10 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import click
+from msgspec import to_builtins
 from msgspec.structs import replace
 
 from tcs_hil.cli.options import bus_options, json_option
-from tcs_hil.config import read_toml
+from tcs_hil.cli.summary import show_summary
+from tcs_hil.config import convert, read_toml
+from tcs_hil.service.daemon import serve
 from tcs_hil.service.settings import ServiceConfig
 
 
@@ -43,9 +46,6 @@ def command(config_path: Path | None, as_json: bool, **options: Any) -> None:
 
     Example: tcs-hil run --controller nmpc --channel vcan0 --flight-recording run.tcsrec
     """
-    from tcs_hil.cli.summary import show_summary
-    from tcs_hil.service.daemon import serve
-
     config = ServiceConfig() if config_path is None else read_toml(config_path, ServiceConfig)
     show_summary(serve(_with_options(config, options), _say), as_json)
 
@@ -61,7 +61,7 @@ def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConf
     def said(**keys: str) -> dict[str, Any]:
         return {key: options[name] for key, name in keys.items() if options[name] is not None}
 
-    return replace(
+    merged = replace(
         config,
         **said(controller="controller", model="model"),
         bus=replace(
@@ -70,3 +70,5 @@ def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConf
         tick=replace(config.tick, **said(trigger="trigger", phase_us="phase_us")),
         recorder=replace(config.recorder, **said(path="recording")),
     )
+    # Put together from parts that were never checked together: bounds are looked at again.
+    return convert(to_builtins(merged), ServiceConfig, "command line")

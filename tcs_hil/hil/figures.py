@@ -19,9 +19,7 @@ COLOURS = {"off": "0.55", "pi": "tab:green", "kmpc": "tab:orange", "nmpc": "tab:
 REFERENCE = {"color": "black", "linestyle": "--", "linewidth": 1.0}
 
 
-def save_slip_figure(
-    path: Path, title: str, runs: Mapping[str, Truth], reference: float
-) -> None:
+def save_slip_figure(path: Path, title: str, runs: Mapping[str, Truth], reference: float) -> None:
     """Slip and motor torque of the left front wheel, one line per controller of ``runs``.
 
     A dotted line in a controller's colour is where its front wheels meet

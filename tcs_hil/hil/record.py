@@ -12,7 +12,9 @@ from tcs_hil.errors import ConfigError
 POLL_S = 0.1
 
 
-def record(bus: can.BusABC, path: Path, stop: Callable[[], bool], ready: Callable[[], object]) -> int:
+def record(
+    bus: can.BusABC, path: Path, stop: Callable[[], bool], ready: Callable[[], object]
+) -> int:
     """Write every frame of ``bus`` to ``path`` until ``stop()``; returns how many.
 
     The suffix chooses the format, as in python-can: ``.blf``, ``.asc``, ``.log``

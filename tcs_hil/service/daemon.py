@@ -40,17 +40,13 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
     laws = build_laws(config, clock)
     with ExitStack() as cleanup:
         stop = cleanup.enter_context(StopRequest())
-        port, description = open_port(
-            config.bus.interface, config.bus.channel, config.bus.bitrate
-        )
+        port, description = open_port(config.bus.interface, config.bus.channel, config.bus.bitrate)
         cleanup.callback(port.close)
         path = _recording_path(config, cleanup)
         recorder = cleanup.enter_context(_recorder(config, path, description))
         node = TcsNode(database)
         loop = Loop(
-            trigger=_trigger(
-                config, clock, port, node, database.messages["BenchTick"].frame_id
-            ),
+            trigger=_trigger(config, clock, port, node, database.messages["BenchTick"].frame_id),
             port=port,
             node=node,
             pipeline=build_pipeline(config, laws),

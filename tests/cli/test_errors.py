@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from tcs_hil import cli
-from tcs_hil.model.edmd import IdentificationSettings, identify
 from tcs_hil.model.dataset import DatasetSettings
+from tcs_hil.model.edmd import IdentificationSettings, identify
 
 SMALL = DatasetSettings(trajectories=20, samples=20, period_s=0.001)
 
@@ -53,6 +53,7 @@ def bad_files(tmp_path: Path) -> dict[str, Path]:
         (("run", "--colour", "red"), "--colour"),
         (("run", "--controller", "lqr"), "lqr"),
         (("run", "--config", "nowhere.toml"), "nowhere.toml"),
+        (("run", "--phase-us", "-1"), "phase_us"),
         (("run", "--channel", "can77"), "can77"),
         (("run", "--interface", "telepathy"), "telepathy"),
         (("run", "--model", "nowhere.npz"), "nowhere.npz"),

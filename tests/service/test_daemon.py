@@ -62,9 +62,7 @@ def test_alone_on_the_bus_it_limits_nothing(
             assert bits >> 44 & 0b111 == TcsState.INIT
 
 
-def test_garbage_on_the_bus_is_survived(
-    channel: str, tmp_path: Path, stranger: can.BusABC
-) -> None:
+def test_garbage_on_the_bus_is_survived(channel: str, tmp_path: Path, stranger: can.BusABC) -> None:
     garbage = [
         can.Message(arbitration_id=0x0A2, data=bytes(8), is_extended_id=False),  # wrong CRC
         can.Message(arbitration_id=0x0A2, data=bytes(3), is_extended_id=False),  # wrong length

@@ -95,14 +95,15 @@ class Candump:
     """A running candump that ends after a number of frames."""
 
     def __init__(self, count: int) -> None:
-        listeners = _raw_listeners()
         self.process = subprocess.Popen(
             ["candump", "-L", "-n", str(count), CHANNEL], stdout=subprocess.PIPE, text=True
         )
+
+    def await_listening(self) -> None:
+        """Return once no frame can escape it any more."""
         deadline_s = time.monotonic() + PATIENCE_S
-        while _raw_listeners() == listeners:
-            if time.monotonic() > deadline_s:
-                pytest.fail("candump does not listen")
+        while not _waits_at_a_socket(self.process.pid):
+            assert time.monotonic() < deadline_s, "candump does not listen"
             time.sleep(0.001)
 
     def lines(self) -> list[str]:
@@ -114,9 +115,13 @@ class Candump:
         return [line.split()[2] for line in self.lines()]
 
 
-def _raw_listeners() -> int:
-    """Sockets that receive every frame of vcan0, as the kernel lists them."""
-    return Path("/proc/net/can/rcvlist_all").read_text().count(CHANNEL)
+def _waits_at_a_socket(pid: int) -> bool:
+    """Whether a process sleeps with a socket open: candump does so only to wait for frames."""
+    process = Path("/proc", str(pid))
+    state = (process / "stat").read_text().rpartition(")")[2].split()[0]
+    return state == "S" and any(
+        link.readlink().name.startswith("socket:") for link in (process / "fd").iterdir()
+    )
 
 
 @pytest.fixture
@@ -128,6 +133,7 @@ def candump() -> Iterator[Callable[[int], Candump]]:
             dump = Candump(count)
             stack.enter_context(dump.process)
             stack.callback(dump.process.kill)
+            dump.await_listening()
             return dump
 
         yield start

@@ -1,0 +1,170 @@
+"""The whole car in time: integration, teeth passing their sensors, and the parking hold."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_emulator import truth
+from plant_emulator.body import GRAVITY_MPS2
+from plant_emulator.compiled import compiled, record
+from plant_emulator.encoder import Encoder, WheelMotion, make_encoder, pass_edges
+from plant_emulator.inverter import Demand, demanded
+from plant_emulator.road import site_at
+from plant_emulator.runge_kutta import STAGES, blend, conclude, steps_for
+from plant_emulator.sensors import Sensors
+from plant_emulator.truth import ROW_SIZE, Row
+from plant_emulator.tyre import modified_slip
+from plant_emulator.whole_car import (
+    ANGLE,
+    HEAVE,
+    HELD_AT,
+    MOTOR_SPEED,
+    PITCH,
+    POSITION,
+    SIZE,
+    SPEED,
+    TWIST,
+    WHEEL,
+    Array,
+    WholeCar,
+    derivative,
+)
+
+STANDSTILL_MPS = 0.05
+SETTLING_S = 3.0
+
+
+@compiled
+def advance(
+    state: Array,
+    encoder: Encoder,
+    demand: Demand,
+    car: WholeCar,
+    road: NDArray[np.float64],
+    span_s: tuple[float, float],
+) -> None:
+    """Integrate over the span (start, duration) with the classic Runge-Kutta method.
+
+    Steps are 0.1 ms or shorter; the road is that under the car at the beginning
+    of a step.
+    """
+    start_s, duration_s = span_s
+    steps = steps_for(duration_s)
+    h = duration_s / steps
+    rates, trial, row = np.zeros((4, SIZE)), np.empty(SIZE), np.empty(ROW_SIZE)
+    for step in range(steps):
+        site = site_at(road, state[POSITION], car.body.wheelbase_m)
+        for stage in range(4):
+            offset_s = STAGES[stage] * h
+            blend(trial, state, offset_s, rates[stage - 1])
+            asked_nm = demanded(demand, step * h + offset_s)
+            derivative(trial, asked_nm, site, car, row, rates[stage])
+        trial[:] = state
+        conclude(state, h, rates)
+        if encoder.edges.shape[1] > 0:
+            _watch_teeth(encoder, trial, state, start_s + step * h, h)
+
+
+@compiled
+def _watch_teeth(encoder: Encoder, before: Array, after: Array, start_s: float, h: float) -> None:
+    for wheel in range(4):
+        pass_edges(encoder, wheel, before[ANGLE + wheel], after[ANGLE + wheel], start_s, h)
+
+
+@compiled
+def _observe(
+    state: Array, demand: Demand, car: WholeCar, road: NDArray[np.float64], row: Row
+) -> None:
+    site = site_at(road, state[POSITION], car.body.wheelbase_m)
+    derivative(state, demanded(demand, 0.0), site, car, row, np.zeros(SIZE))
+    row[truth.DISTANCE], row[truth.BODY_SPEED] = state[POSITION], state[SPEED]
+    row[truth.SPECIFIC_FORCE] = row[truth.ACCEL] + GRAVITY_MPS2 * (site.grade_sin + state[PITCH])
+    row[truth.PITCH], row[truth.HEAVE] = state[PITCH], state[HEAVE]
+    row[truth.GRADE] = site.grade_sin / site.grade_cos
+    for side in range(2):
+        row[truth.MOTOR_SPEED + side] = state[MOTOR_SPEED + side]
+        row[truth.SHAFT_TWIST + side] = state[TWIST + side]
+    for wheel in range(4):
+        rim = state[WHEEL + wheel] * car.body.wheel_radius_m
+        row[truth.WHEEL_SPEED + wheel] = state[WHEEL + wheel]
+        row[truth.SLIP_SPEED + wheel] = rim - state[SPEED]
+        row[truth.SLIP_RATIO + wheel] = modified_slip(rim, state[SPEED])
+        row[truth.MU + wheel] = site.mu[wheel]
+
+
+class WholeCarPlant:
+    """State of a whole car on a road."""
+
+    def __init__(
+        self, car: WholeCar, road: NDArray[np.float64], speed_mps: float, sensors: Sensors
+    ) -> None:
+        self._parameters = car
+        self._car = record(car)
+        self._road = road
+        self._state = _rolling(car, speed_mps)
+        self.encoder = make_encoder(0, 0.0, np.zeros(4), np.random.default_rng(0))
+        if speed_mps == 0.0:
+            self._settle()
+        rng = np.random.default_rng(sensors.seed)
+        self.encoder = make_encoder(
+            sensors.teeth, sensors.pitch_error_ratio, self.wheels.angle_rad, rng
+        )
+
+    @property
+    def wheels(self) -> WheelMotion:
+        """Angle and speed of the wheels now."""
+        return WheelMotion(
+            self._state[ANGLE : ANGLE + 4].copy(), self._state[WHEEL : WHEEL + 4].copy()
+        )
+
+    def advance(self, demand: Demand, time_s: float, duration_s: float) -> None:
+        """Integrate over ``duration_s``."""
+        self._hold_or_release(max(demand.request_nm))
+        span_s = (time_s, duration_s)
+        advance(self._state, self.encoder, demand, self._car, self._road, span_s)
+
+    def observe(self, demand: Demand, row: Row) -> None:
+        """Fill in every state, force and load now."""
+        _observe(self._state, demand, self._car, self._road, row)
+
+    def _settle(self) -> None:
+        """Let a car that starts from rest sink into its springs, held by its brakes."""
+        still = Demand((0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0))
+        self.advance(still, 0.0, SETTLING_S)
+        self._state[POSITION] = 0.0
+
+    def _hold_or_release(self, request_nm: float) -> None:
+        """Brake at standstill without request; let go when the request is worth the slope."""
+        held = self._state[HELD_AT : HELD_AT + 4]
+        if np.isnan(held[0]):
+            if request_nm <= 0.0 and self._stands:
+                held[:] = self._state[ANGLE : ANGLE + 4]
+        elif request_nm > self._slope_torque_nm:
+            held[:] = np.nan
+
+    @property
+    def _stands(self) -> bool:
+        rims = self._state[WHEEL : WHEEL + 4] * self._parameters.body.wheel_radius_m
+        return bool(
+            abs(self._state[SPEED]) < STANDSTILL_MPS and np.abs(rims).max() < STANDSTILL_MPS
+        )
+
+    @property
+    def _slope_torque_nm(self) -> float:
+        """Torque of each motor that balances the grade."""
+        body, line = self._parameters.body, self._parameters.driveline
+        site = site_at(self._road, self._state[POSITION], body.wheelbase_m)
+        pull_n = body.mass_kg * GRAVITY_MPS2 * max(site.grade_sin, 0.0)
+        return pull_n * body.wheel_radius_m / (2.0 * line.gear_ratio)
+
+
+def _rolling(car: WholeCar, speed_mps: float) -> Array:
+    """Every wheel rolling freely, springs at rest, brakes open."""
+    state = np.zeros(SIZE)
+    omega = speed_mps / car.body.wheel_radius_m
+    state[SPEED] = speed_mps
+    state[WHEEL : WHEEL + 4] = omega
+    state[MOTOR_SPEED : MOTOR_SPEED + 2] = omega * car.driveline.gear_ratio
+    state[HELD_AT : HELD_AT + 4] = np.nan
+    return state

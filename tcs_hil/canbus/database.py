@@ -63,14 +63,23 @@ def load_database(path: Path | None = None) -> Database:
         DatabaseError: The file cannot be read, or lacks something the service
             needs; names the message and the signal.
     """
-    source = str(path) if path is not None else "the built-in tcs.dbc"
-    parsed = _parse(source, _read(source, path))
+    source, parsed = parse_dbc(path)
     try:
         messages = {contract.name: _message_spec(parsed, contract) for contract in CONTRACT}
         check_identifiers({name: spec.frame_id for name, spec in messages.items()})
     except DatabaseError as error:
         raise DatabaseError(f"{source}: {error}") from error
     return Database(source, messages)
+
+
+def parse_dbc(path: Path | None = None) -> tuple[str, CanDatabase]:
+    """Read a DBC as cantools sees it, and say where it came from.
+
+    Raises:
+        DatabaseError: The file cannot be read or is no DBC.
+    """
+    source = str(path) if path is not None else "the built-in tcs.dbc"
+    return source, _parse(source, _read(source, path))
 
 
 def _read(source: str, path: Path | None) -> str:

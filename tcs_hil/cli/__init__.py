@@ -14,6 +14,7 @@ COMMANDS = {
     "identify": "Identify a Koopman predictor and write it as a model file.",
     "demo": "Run the paper's experiment between two processes and show it.",
     "record": "Record a bus into a BLF, ASC or candump log file.",
+    "signals": "Print the contract of the bus as a Markdown table.",
     "report": "Show latency, jitter and states of a flight recording.",
 }
 

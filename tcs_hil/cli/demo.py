@@ -14,7 +14,7 @@ from tcs_hil.cli.progress import progress_bar
 from tcs_hil.hil.demo import run_demo
 from tcs_hil.hil.machine import describe_machine
 from tcs_hil.hil.page import write_page
-from tcs_hil.hil.table import COLUMNS, as_dict, row
+from tcs_hil.hil.table import COLUMNS, as_dict, markdown, row
 
 
 @click.command()
@@ -41,8 +41,11 @@ def command(output: Path, interface: str, channel: str, as_json: bool) -> None:
         demo = run_demo(output, interface, channel, advance)
     page = output / "index.html"
     write_page(page, demo)
+    figures = msgspec.json.encode([as_dict(outcome) for outcome in demo.outcomes])
+    (output / "results.json").write_bytes(figures)
+    (output / "results.md").write_text(markdown(demo.outcomes), encoding="utf-8")
     if as_json:
-        click.echo(msgspec.json.encode([as_dict(outcome) for outcome in demo.outcomes]))
+        click.echo(figures)
         return
     table = Table(title=f"{demo.bus}; {describe_machine()}")
     for heading in COLUMNS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from typing import Any
 
@@ -58,6 +58,14 @@ COLUMNS: dict[str, Callable[[Outcome], str]] = {
 def row(outcome: Outcome) -> list[str]:
     """One run's cells, in the order of ``COLUMNS``."""
     return [text(outcome) for text in COLUMNS.values()]
+
+
+def markdown(outcomes: Iterable[Outcome]) -> str:
+    """The whole table for a README."""
+    lines = [list(COLUMNS), ["---"] * len(COLUMNS), *map(row, outcomes)]
+    return "\n".join(
+        f"| {' | '.join(cell.replace('|', '&#124;') for cell in line)} |" for line in lines
+    )
 
 
 def as_dict(outcome: Outcome) -> dict[str, Any]:

@@ -45,6 +45,7 @@ class EmbeddedBus(can.BusABC):
         Raises:
             can.CanInitializationError: The channel's directory or socket cannot be used.
         """
+        self._name = channel
         self.channel_info = f"embedded {channel}"
         self.dropped = 0
         self._channel = Channel(channel)
@@ -141,7 +142,7 @@ class EmbeddedBus(can.BusABC):
         if not packet:
             self._forget(source)
             return None
-        return embedded_packet.unpack(packet, self.channel_info, is_rx=fd != self._own_fd)
+        return embedded_packet.unpack(packet, self._name, is_rx=fd != self._own_fd)
 
     def _offer(self, sink: socket.socket, packet: bytes) -> bool:
         """Hand over a packet; False if the sink is full, True if it is done with."""

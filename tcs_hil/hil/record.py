@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import can
 
+from tcs_hil.canbus.embedded import EmbeddedBus
 from tcs_hil.errors import ConfigError
 
 POLL_S = 0.1
+FIRST_CHANNEL = 0  # of a recording; python-can would take digits out of the interface's name
 
 
 def record(
@@ -23,18 +27,35 @@ def record(
     Raises:
         ConfigError: python-can knows no such suffix, or the file cannot be made.
     """
+    offset_s = _calendar_offset_s(bus)
+    stopped_s = math.inf
+    count = 0
     with _writer(path) as write:
         ready()
-        count = 0
-        while not stop():
-            message = bus.recv(POLL_S)
+        while True:
+            message = bus.recv(POLL_S if stopped_s == math.inf else 0.0)
+            if stopped_s == math.inf and stop():
+                stopped_s = time.time()
+            # What was on its way at the stop is still drained; a busy bus must not keep us.
+            if stopped_s < math.inf and (
+                message is None or message.timestamp + offset_s > stopped_s
+            ):
+                return count
             if message is not None:
-                write(message)
+                write(_as_recorded(message, path, offset_s))
                 count += 1
-        while (message := bus.recv(0.0)) is not None:
-            write(message)
-            count += 1
-    return count
+
+
+def _as_recorded(message: can.Message, path: Path, offset_s: float) -> can.Message:
+    message.timestamp += offset_s
+    if path.suffix == ".blf":
+        message.channel = FIRST_CHANNEL
+    return message
+
+
+def _calendar_offset_s(bus: can.BusABC) -> float:
+    """What turns the bus's stamps into times since 1970, as recordings carry them."""
+    return time.time() - time.monotonic() if isinstance(bus, EmbeddedBus) else 0.0
 
 
 def _writer(path: Path) -> can.io.generic.MessageWriter:

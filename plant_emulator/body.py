@@ -40,8 +40,8 @@ class Body(Table, frozen=True):
     drag_area_m2: NonNegative = 0.65  # c_d A
     air_density_kgpm3: NonNegative = 1.2
     hold_torque_nm: NonNegative = 1500.0  # per wheel
-    hold_stiffness_nmprad: Positive = 20_000.0
-    hold_damping_nmsprad: NonNegative = 100.0
+    hold_stiffness_nmprad: Positive = 50_000.0
+    hold_damping_nmsprad: NonNegative = 1500.0
     load_transfer: bool = True
 
 

@@ -12,39 +12,55 @@ from plant_emulator.compiled import compiled
 
 TURN_RAD = 2.0 * math.pi
 
+GAP, SEEN, MISSING = range(3)
+BELOW, ABOVE, STAMP = range(3)
+
 
 class Encoder(NamedTuple):
     """Four toothed rings and what their sensors have seen; arrays, changed in place.
 
-    ``edges`` are the angles of the edges within a turn, without edges the sensor
-    is ideal.  ``gap`` numbers the edge last passed, over all turns.  ``missing``
-    is a tooth that gives no edges, -1 for none.
+    Columns of ``numbers``: the edge last passed, counted over all turns; how many
+    edges were seen; the tooth that gives no edges, -1 for none.  Columns of
+    ``marks``: angle of the edge below and of the one above the sensor, rad; time
+    of the newest edge, s.
     """
 
-    edges: NDArray[np.float64]  # (4, edges of a turn), rad, ascending from zero
-    gap: NDArray[np.int64]  # (4,)
-    seen: NDArray[np.int64]  # (4,) edges since the start
-    stamp_s: NDArray[np.float64]  # (4,) time of the newest edge
-    missing: NDArray[np.int64]  # (4,)
+    edges: NDArray[np.float64]  # (4, edges of a turn), rad, ascending; none if ideal
+    numbers: NDArray[np.int64]  # (4, 3)
+    marks: NDArray[np.float64]  # (4, 3)
+
+
+class WheelMotion(NamedTuple):
+    """Angle and speed of the four wheels."""
+
+    angle_rad: NDArray[np.float64]  # (4,)
+    speed_radps: NDArray[np.float64]  # (4,)
 
 
 def make_encoder(
-    teeth: int, pitch_error: float, angles_rad: NDArray[np.float64], rng: np.random.Generator
+    teeth: int, pitch_error: float, rolling: WheelMotion, rng: np.random.Generator
 ) -> Encoder:
-    """Cut four rings, every edge off by up to ``pitch_error`` of a pitch; no teeth, no edges."""
+    """Cut four rings, every edge off by up to ``pitch_error`` of a pitch; no teeth, no edges.
+
+    The stamps are those of wheels that have always rolled as they do now.
+    """
     edges = 2 * teeth
     error = rng.uniform(-pitch_error, pitch_error, (4, edges))
     positions = (np.arange(edges) + 0.5 + error) * (TURN_RAD / max(edges, 1))
-    turn = np.floor(angles_rad / TURN_RAD)
-    rest = angles_rad - turn * TURN_RAD
-    passed = np.array([np.searchsorted(positions[w], rest[w], side="right") for w in range(4)])
-    return Encoder(
-        positions,
-        (turn.astype(np.int64) * edges + passed - 1).astype(np.int64),
-        np.zeros(4, np.int64),
-        np.zeros(4),
-        np.full(4, -1, np.int64),
-    )
+    encoder = Encoder(positions, np.zeros((4, 3), np.int64), np.zeros((4, 3)))
+    encoder.numbers[:, MISSING] = -1
+    for wheel in range(4 if edges else 0):
+        _place(encoder, wheel, rolling.angle_rad[wheel])
+        since_rad = rolling.angle_rad[wheel] - encoder.marks[wheel, BELOW]
+        encoder.marks[wheel, STAMP] = -since_rad / max(rolling.speed_radps[wheel], 1e-3)
+    return encoder
+
+
+def _place(encoder: Encoder, wheel: int, angle_rad: float) -> None:
+    turn = math.floor(angle_rad / TURN_RAD)
+    edges = encoder.edges[wheel]
+    passed = int(np.searchsorted(edges, angle_rad - turn * TURN_RAD, side="right"))
+    _between(encoder, wheel, turn * edges.size + passed - 1)
 
 
 @compiled
@@ -55,6 +71,14 @@ def edge_angle(edges: NDArray[np.float64], number: int) -> float:
 
 
 @compiled
+def _between(encoder: Encoder, wheel: int, number: int) -> None:
+    """Put the sensor between edge ``number`` and the next."""
+    encoder.numbers[wheel, GAP] = number
+    encoder.marks[wheel, BELOW] = edge_angle(encoder.edges[wheel], number)
+    encoder.marks[wheel, ABOVE] = edge_angle(encoder.edges[wheel], number + 1)
+
+
+@compiled
 def pass_edges(
     encoder: Encoder, wheel: int, before_rad: float, after_rad: float, start_s: float, h: float
 ) -> None:
@@ -62,55 +86,42 @@ def pass_edges(
 
     Within a step of 0.1 ms the speed is constant as far as a stamp can tell.
     """
-    edges = encoder.edges[wheel]
-    number = encoder.gap[wheel]
-    pace = h / (after_rad - before_rad) if after_rad != before_rad else 0.0
-    while after_rad >= edge_angle(edges, number + 1):
-        number += 1
-        _stamp(encoder, wheel, number, start_s + pace * (edge_angle(edges, number) - before_rad))
-    while after_rad < edge_angle(edges, number):
-        _stamp(encoder, wheel, number, start_s + pace * (edge_angle(edges, number) - before_rad))
-        number -= 1
-    encoder.gap[wheel] = number
+    marks = encoder.marks[wheel]
+    while after_rad >= marks[ABOVE]:
+        moment_s = start_s + h * (marks[ABOVE] - before_rad) / (after_rad - before_rad)
+        _between(encoder, wheel, encoder.numbers[wheel, GAP] + 1)
+        _stamp(encoder, wheel, encoder.numbers[wheel, GAP], moment_s)
+    while after_rad < marks[BELOW]:
+        moment_s = start_s + h * (marks[BELOW] - before_rad) / (after_rad - before_rad)
+        _stamp(encoder, wheel, encoder.numbers[wheel, GAP], moment_s)
+        _between(encoder, wheel, encoder.numbers[wheel, GAP] - 1)
 
 
 @compiled
 def _stamp(encoder: Encoder, wheel: int, number: int, time_s: float) -> None:
     tooth = (number % encoder.edges.shape[1]) // 2
-    if tooth != encoder.missing[wheel]:
-        encoder.seen[wheel] += 1
-        encoder.stamp_s[wheel] = time_s
-
-
-class WheelMotion(NamedTuple):
-    """Angle and speed of the four wheels."""
-
-    angle_rad: NDArray[np.float64]  # (4,)
-    speed_radps: NDArray[np.float64]  # (4,)
-
-
-def _stamps_before_start(encoder: Encoder, rolling: WheelMotion) -> NDArray[np.float64]:
-    """When the wheels, rolling as they do at time zero, passed their last edges."""
-    since_rad = [
-        angle - edge_angle(encoder.edges[wheel], encoder.gap[wheel])
-        for wheel, angle in enumerate(rolling.angle_rad)
-    ]
-    return -np.array(since_rad) / np.maximum(rolling.speed_radps, 1e-3)
+    if tooth != encoder.numbers[wheel, MISSING]:
+        encoder.numbers[wheel, SEEN] += 1
+        encoder.marks[wheel, STAMP] = time_s
 
 
 class SpeedUnit(NamedTuple):
     """What the unit that makes speeds of edges remembers; arrays, changed in place."""
 
     dropout_s: float
-    count: NDArray[np.int64]  # (4,) edges at the last sample
+    seen: NDArray[np.int64]  # (4,) edges at the last sample
     stamp_s: NDArray[np.float64]  # (4,) newest edge then
     speed_radps: NDArray[np.float64]  # (4,) speed shown then
 
 
 def make_speed_unit(encoder: Encoder, rolling: WheelMotion, dropout_s: float) -> SpeedUnit:
-    """Start a unit on wheels that have always rolled as they do now."""
-    stamp_s = _stamps_before_start(encoder, rolling)
-    return SpeedUnit(dropout_s, encoder.seen.copy(), stamp_s, rolling.speed_radps.copy())
+    """Start a unit that already shows the wheels' speeds."""
+    return SpeedUnit(
+        dropout_s,
+        encoder.numbers[:, SEEN].copy(),
+        encoder.marks[:, STAMP].copy(),
+        rolling.speed_radps.copy(),
+    )
 
 
 @compiled
@@ -123,12 +134,12 @@ def sample_speeds(unit: SpeedUnit, encoder: Encoder, time_s: float) -> None:
     """
     pitch_rad = TURN_RAD / encoder.edges.shape[1]
     for wheel in range(4):
-        edges = encoder.seen[wheel] - unit.count[wheel]
+        edges = encoder.numbers[wheel, SEEN] - unit.seen[wheel]
         if edges > 0:
-            between_s = encoder.stamp_s[wheel] - unit.stamp_s[wheel]
+            between_s = encoder.marks[wheel, STAMP] - unit.stamp_s[wheel]
             unit.speed_radps[wheel] = edges * pitch_rad / between_s
-            unit.stamp_s[wheel] = encoder.stamp_s[wheel]
-            unit.count[wheel] = encoder.seen[wheel]
+            unit.stamp_s[wheel] = encoder.marks[wheel, STAMP]
+            unit.seen[wheel] = encoder.numbers[wheel, SEEN]
         silence_s = time_s - unit.stamp_s[wheel]
         if silence_s > unit.dropout_s:
             unit.speed_radps[wheel] = 0.0

@@ -60,12 +60,15 @@ class LimitKeeper:
 
     def demand(self, request: Line, time_s: float) -> Demand:
         """Request and limits from ``time_s`` until `next_change`."""
-        late_s = max(time_s - self._expiry_s, 0.0)
         slope = RELEASE_NMPS if time_s >= self._expiry_s else 0.0
-        left_nm, right_nm = self._limits
         return Demand(
             (request.value, request.value),
             (request.slope, request.slope),
-            (left_nm + RELEASE_NMPS * late_s, right_nm + RELEASE_NMPS * late_s),
+            self.limits_nm(time_s),
             (slope, slope),
         )
+
+    def limits_nm(self, time_s: float) -> Pair:
+        """Limits in force at ``time_s``."""
+        released_nm = RELEASE_NMPS * max(time_s - self._expiry_s, 0.0)
+        return (self._limits.left_nm + released_nm, self._limits.right_nm + released_nm)

@@ -7,11 +7,14 @@ from typing import Protocol
 import numpy as np
 
 from plant_emulator.driver import Pedal
+from plant_emulator.encoder import Encoder
 from plant_emulator.inverter import Demand, LimitKeeper
+from plant_emulator.motor_faults import MotorFaults
 from plant_emulator.quarter_car import QuarterCarPlant
 from plant_emulator.road import road_table
 from plant_emulator.scenario import Scenario
 from plant_emulator.sensors import IDEAL, SensorSet
+from plant_emulator.signal_faults import SignalFaults
 from plant_emulator.truth import DISTANCE, LIMIT, REQUEST, ROW_SIZE, TIME, Row, Truth, truth_of
 from plant_emulator.whole_car_plant import WholeCarPlant
 from tcs_hil.canbus.vehicle_node import VehicleSignals
@@ -35,26 +38,46 @@ class Plant:
 
     def __init__(self, scenario: Scenario) -> None:
         self._scenario = scenario
-        self._car, self._sensors = _build(scenario)
+        self._car, self._sensors, self._encoder = _build(scenario)
         self._pedal = Pedal(scenario.driver)
         self._keeper = LimitKeeper()
+        rng = np.random.default_rng([scenario.sensors.seed, 1])
+        self._signal_faults = SignalFaults(scenario.fault, rng)
+        self._motor_faults = MotorFaults(scenario.fault, rng)
         self.time_s = 0.0
+        self._demand = self._demand_now()
         self._row: Row | None = None
 
     def step(self, limits: TorqueLimits | None, dt_s: float) -> None:
         """Let ``dt_s`` pass; ``limits`` are those that arrived at its beginning, if any did."""
         if limits is not None:
             self._keeper.accept(limits, self.time_s)
+            self._demand = self._demand_now()
         self._row = None
         end_s = self.time_s + dt_s
         while self.time_s < end_s:
             piece_end_s = min(end_s, self._next_change())
-            self._car.advance(self._demand(), self.time_s, piece_end_s - self.time_s)
+            self._signal_faults.break_teeth(self._encoder, self.time_s)
+            self._car.advance(self._demand, self.time_s, piece_end_s - self.time_s)
             self.time_s = piece_end_s
+            self._demand = self._demand_now()
 
     def signals(self) -> VehicleSignals:
-        """Sample the sensors: once per instant, since a sample counts edges and draws noise."""
-        return self._sensors.sample(self.row)
+        """Sample the sensors, faults included.
+
+        Once per instant: a sample counts edges, draws noise and ages faults.
+        """
+        return self._signal_faults.apply(self._sensors.sample(self.row), self.time_s)
+
+    @property
+    def scenario(self) -> Scenario:
+        """What this plant was made from."""
+        return self._scenario
+
+    @property
+    def dark(self) -> bool:
+        """Whether the car's electronics are down."""
+        return self._motor_faults.dark(self.time_s)
 
     @property
     def row(self) -> Row:
@@ -78,25 +101,31 @@ class Plant:
         return end_m is not None and bool(self.row[DISTANCE] >= end_m)
 
     def _observe(self) -> Row:
-        demand, row = self._demand(), np.zeros(ROW_SIZE)
-        self._car.observe(demand, row)
+        row = np.zeros(ROW_SIZE)
+        self._car.observe(self._demand, row)
         row[TIME], row[REQUEST] = self.time_s, self._pedal.at(self.time_s).value
-        row[LIMIT : LIMIT + 2] = demand.limit_nm
+        row[LIMIT : LIMIT + 2] = self._keeper.limits_nm(self.time_s)
         return row
 
-    def _demand(self) -> Demand:
-        return self._keeper.demand(self._pedal.at(self.time_s), self.time_s)
+    def _demand_now(self) -> Demand:
+        demand = self._keeper.demand(self._pedal.at(self.time_s), self.time_s)
+        return self._motor_faults.apply(demand, self.time_s)
 
     def _next_change(self) -> float:
-        return min(self._pedal.next_change(self.time_s), self._keeper.next_change(self.time_s))
+        return min(
+            self._pedal.next_change(self.time_s),
+            self._keeper.next_change(self.time_s),
+            self._motor_faults.next_change(self.time_s),
+        )
 
 
-def _build(scenario: Scenario) -> tuple[Car, SensorSet]:
-    """Make the car of the scenario and the sensors in it."""
+def _build(scenario: Scenario) -> tuple[Car, SensorSet, Encoder | None]:
+    """Make the car of the scenario, the sensors in it and, if it has any, its toothed rings."""
     road, speed_mps = road_table(scenario.road), scenario.start_speed_mps
     rng = np.random.default_rng(scenario.sensors.seed)
     if scenario.vehicle.variant == "quarter-car":
         quarter = QuarterCarPlant(scenario.vehicle.quarter_car, road, speed_mps)
-        return quarter, SensorSet(IDEAL, rng)
+        return quarter, SensorSet(IDEAL, rng), None
     whole = WholeCarPlant(scenario.vehicle.whole, road, speed_mps, scenario.sensors)
-    return whole, SensorSet(scenario.sensors, rng, whole.encoder, whole.wheels)
+    sensors = SensorSet(scenario.sensors, rng, whole.encoder, whole.wheels)
+    return whole, sensors, whole.encoder

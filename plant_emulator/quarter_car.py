@@ -16,7 +16,7 @@ from plant_emulator.bounds import Positive, Table
 from plant_emulator.compiled import compiled, record
 from plant_emulator.inverter import Demand, demanded
 from plant_emulator.road import MU_LEFT, MU_RIGHT, patch_at
-from plant_emulator.runge_kutta import STAGES, blend, conclude, steps_for
+from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
 from plant_emulator.truth import (
     ACCEL,
     BODY_SPEED,
@@ -96,6 +96,7 @@ def advance(
     car: QuarterCar,
     road: NDArray[np.float64],  # (patches, 5)
     duration_s: float,
+    work: Work,
 ) -> None:
     """Integrate with the classic Runge-Kutta method, in steps of at most 0.1 ms.
 
@@ -103,15 +104,16 @@ def advance(
     """
     steps = steps_for(duration_s)
     h = duration_s / steps
-    rates, trial = np.zeros((4, state.size)), np.empty(state.size)
     for step in range(steps):
         patch = road[patch_at(road, state[POSITION])]
         mu = (patch[MU_LEFT], patch[MU_RIGHT])
         for stage in range(4):
             offset_s = STAGES[stage] * h
-            blend(trial, state, offset_s, rates[stage - 1])
-            derivative(trial, demanded(demand, step * h + offset_s), mu, car, rates[stage])
-        conclude(state, h, rates)
+            blend(work.trial, state, offset_s, work.rates[stage - 1])
+            derivative(
+                work.trial, demanded(demand, step * h + offset_s), mu, car, work.rates[stage]
+            )
+        conclude(state, h, work.rates)
 
 
 class QuarterCarPlant:
@@ -122,10 +124,11 @@ class QuarterCarPlant:
         self._road = road
         omega = speed_mps / car.wheel_radius_m
         self._state = np.array([speed_mps, omega, omega, 0.0])
+        self._work = work_for(self._state.size)
 
     def advance(self, demand: Demand, _time_s: float, duration_s: float) -> None:
         """Integrate over ``duration_s``."""
-        advance(self._state, demand, self._car, self._road, duration_s)
+        advance(self._state, demand, self._car, self._road, duration_s, self._work)
 
     def observe(self, demand: Demand, row: Row) -> None:
         """Fill in every state; what a quarter car has not (shaft, pitch, rear force) stays zero."""

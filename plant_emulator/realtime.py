@@ -28,16 +28,33 @@ def run_realtime(
     jitter_ns = []
     instant_ns = start_ns
     while not emulator.plant.finished and not stop():
+        _relay_until(instant_ns, start_ns, emulator, port, clock)
         clock.sleep_until(instant_ns)
         woken_ns = clock.now_ns()
         jitter_ns.append(woken_ns - instant_ns)
         instant_ns = max(instant_ns, _last_instant(woken_ns, phase_ns))
-        for frame in port.receive():
-            emulator.hear(frame.frame_id, frame.data, frame.stamp_ns - start_ns)
+        _hear(emulator, port, start_ns)
         emulator.advance_to(instant_ns - start_ns)
         emulator.publish()
         instant_ns += PERIOD_NS
     return np.array(jitter_ns, dtype=np.int64)
+
+
+def _relay_until(
+    instant_ns: int, start_ns: int, emulator: Emulator, port: CanPort, clock: Clock
+) -> None:
+    """Wake for every frame that comes off the emulated wire before ``instant_ns``."""
+    while (arrival_ns := emulator.next_arrival_ns) is not None:
+        if start_ns + arrival_ns >= instant_ns:
+            return
+        clock.sleep_until(start_ns + arrival_ns)
+        _hear(emulator, port, start_ns)
+        emulator.relay(max(arrival_ns, min(clock.now_ns(), instant_ns) - start_ns))
+
+
+def _hear(emulator: Emulator, port: CanPort, start_ns: int) -> None:
+    for frame in port.receive():
+        emulator.hear(frame.frame_id, frame.data, frame.stamp_ns - start_ns)
 
 
 def _last_instant(now_ns: int, phase_ns: int) -> int:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from plant_emulator.bounds import NonNegative, Table
 from plant_emulator.compiled import compiled
-from tcs_hil.signals import FourWheels
+from plant_emulator.truth import MU, Row
 
 Friction = Annotated[float, Meta(gt=0.0, le=1.5)]
 Grade = Annotated[float, Meta(ge=-0.2, le=0.2)]
@@ -64,24 +64,25 @@ def patch_at(road: NDArray[np.float64], position_m: float) -> int:
 
 
 class Site(NamedTuple):
-    """The road under the car."""
+    """The road under the car but for its friction."""
 
-    mu: FourWheels
-    peak_only: tuple[bool, bool]  # front, rear
+    front_peak_only: bool
+    rear_peak_only: bool
     grade_sin: float
     grade_cos: float
 
 
 @compiled
-def site_at(road: NDArray[np.float64], position_m: float, wheelbase_m: float) -> Site:
-    """Friction under each wheel, the rear ones a wheelbase behind, and the mean grade."""
+def site_at(road: NDArray[np.float64], position_m: float, wheelbase_m: float, row: Row) -> Site:
+    """Read the road under a car whose front axle is at ``position_m``.
+
+    Friction under each wheel goes into ``row``, the rear ones' a wheelbase
+    behind; the grade is the mean of both axles'.
+    """
     front = road[patch_at(road, position_m)]
     rear = road[patch_at(road, position_m - wheelbase_m)]
+    row[MU], row[MU + 1] = front[MU_LEFT], front[MU_RIGHT]
+    row[MU + 2], row[MU + 3] = rear[MU_LEFT], rear[MU_RIGHT]
     rise = 0.5 * (front[GRADE] + rear[GRADE])
     grade_cos = 1.0 / math.sqrt(1.0 + rise * rise)
-    return Site(
-        (front[MU_LEFT], front[MU_RIGHT], rear[MU_LEFT], rear[MU_RIGHT]),
-        (front[PEAK_ONLY] > 0.0, rear[PEAK_ONLY] > 0.0),
-        rise * grade_cos,
-        grade_cos,
-    )
+    return Site(front[PEAK_ONLY] > 0.0, rear[PEAK_ONLY] > 0.0, rise * grade_cos, grade_cos)

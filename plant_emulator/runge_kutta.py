@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_emulator.compiled import compiled
+from plant_emulator.truth import ROW_SIZE
 
 MAX_STEP_S = 1e-4
 """Longest integration step; docs/plant.md shows why it is short enough."""
@@ -13,6 +16,19 @@ MAX_STEP_S = 1e-4
 
 STAGES = (0.0, 0.5, 0.5, 1.0)
 """Where in the step each of the four stages looks."""
+
+
+class Work(NamedTuple):
+    """Arrays a step works in, made once so that compiled code allocates nothing."""
+
+    rates: NDArray[np.float64]  # (4, states), derivative in each stage
+    trial: NDArray[np.float64]  # (states,), what a stage looks at
+    row: NDArray[np.float64]  # (ROW_SIZE,), what acts there
+
+
+def work_for(states: int) -> Work:
+    """Make the arrays for a system of ``states``."""
+    return Work(np.zeros((4, states)), np.zeros(states), np.zeros(ROW_SIZE))
 
 
 @compiled

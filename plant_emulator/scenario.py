@@ -11,11 +11,14 @@ from msgspec import Meta
 
 from plant_emulator.body import Body
 from plant_emulator.bounds import NonNegative, Positive, Table
+from plant_emulator.bustiming import IDEAL, BusTiming
 from plant_emulator.driveline import Driveline
 from plant_emulator.driver import Driver
+from plant_emulator.faults import Fault
 from plant_emulator.quarter_car import QuarterCar
 from plant_emulator.road import Patch
 from plant_emulator.sensors import Sensors
+from plant_emulator.tir import read_tir
 from plant_emulator.tyre import Tyre
 from plant_emulator.whole_car import WholeCar
 from tcs_hil.config import read_toml
@@ -27,9 +30,14 @@ Variant = Literal["quarter-car", "vehicle"]
 
 
 class VehicleTable(Table, frozen=True):
-    """Which car, and where it differs from the default one."""
+    """Which car, and where it differs from the default one.
+
+    ``tyre_file`` is a tyre property file (.tir), relative to the scenario's; it
+    takes the place of ``[vehicle.tyre]``.
+    """
 
     variant: Variant = "vehicle"
+    tyre_file: str | None = None
     quarter_car: QuarterCar = QuarterCar()
     body: Body = Body()
     tyre: Tyre = Tyre()
@@ -77,6 +85,8 @@ class Scenario(Table, frozen=True):
     vehicle: VehicleTable = VehicleTable()
     road: Annotated[tuple[Patch, ...], Meta(min_length=1)] = (Patch(mu=1.0),)
     sensors: Sensors = Sensors()
+    bus: BusTiming = BusTiming()
+    fault: tuple[Fault, ...] = ()
     controller: ControllerTable = ControllerTable()
     expect: tuple[Expect, ...] = ()
 
@@ -84,6 +94,11 @@ class Scenario(Table, frozen=True):
         """Refuse a road whose patches are not in the order of travel."""
         if any(later.from_m <= earlier.from_m for earlier, later in pairwise(self.road)):
             raise ValueError("`from_m` must increase from one `[[road]]` patch to the next")
+
+    @property
+    def bus_timing(self) -> BusTiming:
+        """Timing of the bus in this run: the quarter car's world knows no delay."""
+        return IDEAL if self.vehicle.variant == "quarter-car" else self.bus
 
     @property
     def start_speed_mps(self) -> float:
@@ -111,7 +126,13 @@ def load_scenario(name_or_path: str | Path) -> Scenario:
         ConfigError: there is no such scenario or file, it is not TOML, or a key
             is unknown or out of bounds; file and key are named.
     """
-    return read_toml(_find(name_or_path), Scenario)
+    path = _find(name_or_path)
+    scenario = read_toml(path, Scenario)
+    if scenario.vehicle.tyre_file is None:
+        return scenario
+    tyre = read_tir(path.parent / scenario.vehicle.tyre_file)
+    vehicle = msgspec.structs.replace(scenario.vehicle, tyre=tyre)
+    return msgspec.structs.replace(scenario, vehicle=vehicle)
 
 
 def list_scenarios() -> list[Listing]:

@@ -66,7 +66,8 @@ def run(
     with closing(CanPort(bus, send_timeout_s=_SEND_TIMEOUT_S[options.mode])) as port:
         _warm_up(scenario)
         plant = Plant(scenario)
-        emulator = Emulator(plant, VehicleNode(load_database()), port, recorder)
+        live = options.mode == "realtime"
+        emulator = Emulator(plant, VehicleNode(load_database()), port, recorder, live=live)
         notify("READY=1")
         jitter_ns = _drive(emulator, port, options, stop)
     recorder.save(jitter_ns)

@@ -26,6 +26,7 @@ from plant_emulator.truth import (
     BRAKE_TORQUE,
     FORCE,
     LOAD,
+    MU,
     SHAFT_TORQUE,
     TYRE_SLIP,
     Row,
@@ -69,7 +70,7 @@ def derivative(
     load_n = wheel_loads(car.body, axle_n[0], axle_n[1], site.grade_cos)
     force_n = -drag(car.body, state[SPEED])
     for wheel in range(4):
-        row[LOAD + wheel] = load_n[wheel // 2]
+        row[LOAD + wheel] = load_n[0] if wheel < 2 else load_n[1]
         _touch(state, site, car, wheel, row, rate)
         force_n += row[FORCE + wheel]
     for side in range(2):
@@ -92,7 +93,8 @@ def _suspension(state: Array, body: Body) -> Pair:
 def _touch(state: Array, site: Site, car: WholeCar, wheel: int, row: Row, rate: Array) -> None:
     """Tyre force, brake and rolling resistance of one wheel, and what they do to it."""
     radius, omega, load_n = car.body.wheel_radius_m, state[WHEEL + wheel], row[LOAD + wheel]
-    rim, mu, peak_only = omega * radius, site.mu[wheel], site.peak_only[wheel // 2]
+    rim = omega * radius
+    peak_only = site.front_peak_only if wheel < 2 else site.rear_peak_only
     if car.tyre.relaxation_m > 0.0:
         slip_mps, rolling_mps = rim - state[SPEED], rolling_speed(rim, state[SPEED])
         kappa = state[DEFLECTION + wheel] / car.tyre.relaxation_m
@@ -100,7 +102,7 @@ def _touch(state: Array, site: Site, car: WholeCar, wheel: int, row: Row, rate: 
         kappa += low_speed_slip(car.tyre, slip_mps, rolling_mps, load_n)
     else:
         kappa = modified_slip(rim, state[SPEED])
-    force_n = tyre_force(car.tyre, kappa, load_n, mu, peak_only)
+    force_n = tyre_force(car.tyre, kappa, load_n, row[MU + wheel], peak_only)
     brake_nm = 0.0
     if not math.isnan(state[HELD_AT + wheel]):
         brake_nm = hold_torque(car.body, state[ANGLE + wheel] - state[HELD_AT + wheel], omega)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,9 +13,9 @@ from plant_emulator.compiled import compiled, record
 from plant_emulator.encoder import Encoder, WheelMotion, make_encoder, pass_edges
 from plant_emulator.inverter import Demand, demanded
 from plant_emulator.road import site_at
-from plant_emulator.runge_kutta import STAGES, blend, conclude, steps_for
-from plant_emulator.sensors import Sensors
-from plant_emulator.truth import ROW_SIZE, Row
+from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
+from plant_emulator.sensors import IDEAL, Sensors
+from plant_emulator.truth import Row
 from plant_emulator.tyre import modified_slip
 from plant_emulator.whole_car import (
     ANGLE,
@@ -35,35 +37,41 @@ STANDSTILL_MPS = 0.05
 SETTLING_S = 3.0
 
 
+class Moving(NamedTuple):
+    """What changes while the car drives, and the arrays it is computed in."""
+
+    state: Array  # (SIZE,)
+    encoder: Encoder
+    work: Work
+
+
 @compiled
 def advance(
-    state: Array,
-    encoder: Encoder,
+    moving: Moving,
     demand: Demand,
     car: WholeCar,
     road: NDArray[np.float64],
-    span_s: tuple[float, float],
+    start_s: float,
+    duration_s: float,
 ) -> None:
-    """Integrate over the span (start, duration) with the classic Runge-Kutta method.
+    """Integrate with the classic Runge-Kutta method, in steps of at most 0.1 ms.
 
-    Steps are 0.1 ms or shorter; the road is that under the car at the beginning
-    of a step.
+    The road is that under the car at the beginning of a step.
     """
-    start_s, duration_s = span_s
+    state, encoder, work = moving
     steps = steps_for(duration_s)
     h = duration_s / steps
-    rates, trial, row = np.zeros((4, SIZE)), np.empty(SIZE), np.empty(ROW_SIZE)
     for step in range(steps):
-        site = site_at(road, state[POSITION], car.body.wheelbase_m)
+        site = site_at(road, state[POSITION], car.body.wheelbase_m, work.row)
         for stage in range(4):
             offset_s = STAGES[stage] * h
-            blend(trial, state, offset_s, rates[stage - 1])
+            blend(work.trial, state, offset_s, work.rates[stage - 1])
             asked_nm = demanded(demand, step * h + offset_s)
-            derivative(trial, asked_nm, site, car, row, rates[stage])
-        trial[:] = state
-        conclude(state, h, rates)
+            derivative(work.trial, asked_nm, site, car, work.row, work.rates[stage])
+        blend(work.trial, state, 0.0, work.rates[0])  # where the step began, for the teeth
+        conclude(state, h, work.rates)
         if encoder.edges.shape[1] > 0:
-            _watch_teeth(encoder, trial, state, start_s + step * h, h)
+            _watch_teeth(encoder, work.trial, state, start_s + step * h, h)
 
 
 @compiled
@@ -74,10 +82,11 @@ def _watch_teeth(encoder: Encoder, before: Array, after: Array, start_s: float, 
 
 @compiled
 def _observe(
-    state: Array, demand: Demand, car: WholeCar, road: NDArray[np.float64], row: Row
+    moving: Moving, demand: Demand, car: WholeCar, road: NDArray[np.float64], row: Row
 ) -> None:
-    site = site_at(road, state[POSITION], car.body.wheelbase_m)
-    derivative(state, demanded(demand, 0.0), site, car, row, np.zeros(SIZE))
+    state = moving.state
+    site = site_at(road, state[POSITION], car.body.wheelbase_m, row)
+    derivative(state, demanded(demand, 0.0), site, car, row, moving.work.rates[0])
     row[truth.DISTANCE], row[truth.BODY_SPEED] = state[POSITION], state[SPEED]
     row[truth.SPECIFIC_FORCE] = row[truth.ACCEL] + GRAVITY_MPS2 * (site.grade_sin + state[PITCH])
     row[truth.PITCH], row[truth.HEAVE] = state[PITCH], state[HEAVE]
@@ -90,7 +99,6 @@ def _observe(
         row[truth.WHEEL_SPEED + wheel] = state[WHEEL + wheel]
         row[truth.SLIP_SPEED + wheel] = rim - state[SPEED]
         row[truth.SLIP_RATIO + wheel] = modified_slip(rim, state[SPEED])
-        row[truth.MU + wheel] = site.mu[wheel]
 
 
 class WholeCarPlant:
@@ -103,13 +111,17 @@ class WholeCarPlant:
         self._car = record(car)
         self._road = road
         self._state = _rolling(car, speed_mps)
-        self.encoder = make_encoder(0, 0.0, np.zeros(4), np.random.default_rng(0))
+        self._work = work_for(SIZE)
+        self._fit(IDEAL)
         if speed_mps == 0.0:
             self._settle()
+        self._fit(sensors)
+
+    def _fit(self, sensors: Sensors) -> None:
+        """Put toothed rings on the wheels as they stand."""
         rng = np.random.default_rng(sensors.seed)
-        self.encoder = make_encoder(
-            sensors.teeth, sensors.pitch_error_ratio, self.wheels.angle_rad, rng
-        )
+        self.encoder = make_encoder(sensors.teeth, sensors.pitch_error_ratio, self.wheels, rng)
+        self._moving = Moving(self._state, self.encoder, self._work)
 
     @property
     def wheels(self) -> WheelMotion:
@@ -121,12 +133,11 @@ class WholeCarPlant:
     def advance(self, demand: Demand, time_s: float, duration_s: float) -> None:
         """Integrate over ``duration_s``."""
         self._hold_or_release(max(demand.request_nm))
-        span_s = (time_s, duration_s)
-        advance(self._state, self.encoder, demand, self._car, self._road, span_s)
+        advance(self._moving, demand, self._car, self._road, time_s, duration_s)
 
     def observe(self, demand: Demand, row: Row) -> None:
         """Fill in every state, force and load now."""
-        _observe(self._state, demand, self._car, self._road, row)
+        _observe(self._moving, demand, self._car, self._road, row)
 
     def _settle(self) -> None:
         """Let a car that starts from rest sink into its springs, held by its brakes."""
@@ -154,7 +165,7 @@ class WholeCarPlant:
     def _slope_torque_nm(self) -> float:
         """Torque of each motor that balances the grade."""
         body, line = self._parameters.body, self._parameters.driveline
-        site = site_at(self._road, self._state[POSITION], body.wheelbase_m)
+        site = site_at(self._road, self._state[POSITION], body.wheelbase_m, self._work.row)
         pull_n = body.mass_kg * GRAVITY_MPS2 * max(site.grade_sin, 0.0)
         return pull_n * body.wheel_radius_m / (2.0 * line.gear_ratio)
 

@@ -135,7 +135,7 @@ class EmbeddedBus(can.BusABC):
             return None
         source = self._sources[fd]
         try:
-            packet = source.recv(embedded_packet.SIZE_MAX)
+            packet = source.recv(embedded_packet.SIZE_MAX + 1)
         except ConnectionResetError:
             # It left without reading everything of ours; what it sent is still queued.
             return None

@@ -27,8 +27,13 @@ def pack(msg: can.Message, stamp_ns: int) -> bytes:
     return _HEADER.pack(msg.arbitration_id | flags, msg.dlc, stamp_ns) + msg.data
 
 
-def unpack(packet: bytes, channel: str, *, is_rx: bool) -> can.Message:
-    """Rebuild the frame; its timestamp is the moment of sending in seconds."""
+def unpack(packet: bytes, channel: str, *, is_rx: bool) -> can.Message | None:
+    """Rebuild the frame; its timestamp is the moment of sending in seconds.
+
+    None for bytes that no node of this bus can have sent.
+    """
+    if not _HEADER.size <= len(packet) <= SIZE_MAX:
+        return None
     can_id, dlc, stamp_ns = _HEADER.unpack_from(packet)
     return can.Message(
         timestamp=stamp_ns * 1e-9,

@@ -34,8 +34,14 @@ def _row(message: Message, signal: Signal, first: bool) -> str:
         ", ".join(message.senders) if first else "",
         f"`{signal.name}`",
         signal.unit or "",
-        f"{signal.minimum:g} … {signal.maximum:g}",
+        _range(signal),
         f"{signal.scale:g}",
         signal.comment or "",
     )
     return f"| {' | '.join(about)} |"
+
+
+def _range(signal: Signal) -> str:
+    if signal.minimum is None or signal.maximum is None:
+        return ""
+    return f"{signal.minimum:g} … {signal.maximum:g}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from cantools.database.can import Database as CanDatabase
@@ -102,11 +103,16 @@ def _check_signal(message: Message, signal: Signal, receiver: str) -> None:
         raise _fault(message, "has no comment", signal.name)
     if receiver not in signal.receivers:
         raise _fault(message, f"must be received by node {receiver}", signal.name)
-    if signal.minimum is None or signal.maximum is None or signal.minimum >= signal.maximum:
+    if not _has_range(signal):
         raise _fault(message, "has no range", signal.name)
-    if signal.scale <= 0:
-        raise _fault(message, f"must have a positive factor, not {signal.scale}", signal.name)
+    if not 0 < signal.scale < math.inf or not math.isfinite(signal.offset):
+        raise _fault(message, "must have a positive factor and a finite offset", signal.name)
     _check_meaning(message, signal)
+
+
+def _has_range(signal: Signal) -> bool:
+    low, high = signal.minimum, signal.maximum
+    return low is not None and high is not None and -math.inf < low < high < math.inf
 
 
 def _check_meaning(message: Message, signal: Signal) -> None:
@@ -157,13 +163,11 @@ def _attribute(message: Message, name: str) -> object:
     if name not in attributes:
         return None
     attribute = attributes[name]
-    choices = attribute.definition.choices
+    choices, value = attribute.definition.choices, attribute.value
     # An enumeration is stored as its index by some tools and as its text by others.
-    return (
-        choices[attribute.value]
-        if choices and isinstance(attribute.value, int)
-        else attribute.value
-    )
+    if not choices or not isinstance(value, int):
+        return value
+    return choices[value] if 0 <= value < len(choices) else None
 
 
 def _fault(message: Message, what: str, signal: str | None = None) -> DatabaseError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import click
@@ -11,10 +12,24 @@ from rich.table import Table
 
 from tcs_hil.cli.options import json_option
 from tcs_hil.cli.progress import progress_bar
-from tcs_hil.hil.demo import run_demo
+from tcs_hil.errors import ConfigError
+from tcs_hil.hil.demo import Demo, Outcome, run_demo
 from tcs_hil.hil.machine import describe_machine
 from tcs_hil.hil.page import write_page
-from tcs_hil.hil.table import COLUMNS, as_dict, markdown, row
+from tcs_hil.hil.processes import interrupted_by_sigterm
+from tcs_hil.hil.table import (
+    COLUMNS,
+    RUN_COLUMNS,
+    SLIP_COLUMNS,
+    TIMING_COLUMNS,
+    Columns,
+    as_dict,
+    markdown,
+    row,
+)
+
+WIDE = 200
+"""Characters the whole table takes."""
 
 
 @click.command()
@@ -26,9 +41,9 @@ from tcs_hil.hil.table import COLUMNS, as_dict, markdown, row
     help="Folder for figures, page, recordings and logs.",
 )
 @click.option("--interface", default="auto", show_default=True, help="As for `tcs-hil run`.")
-@click.option("--channel", default="vcan0", show_default=True, help="As for `tcs-hil run`.")
+@click.option("--channel", help="As for `tcs-hil run`; without it vcan0, or one of our own.")
 @json_option
-def command(output: Path, interface: str, channel: str, as_json: bool) -> None:
+def command(output: Path, interface: str, channel: str | None, as_json: bool) -> None:
     """Run both manoeuvres of the paper with every controller, between two processes on a bus.
 
     Each run is made twice: in lockstep, where the plant waits for the answer,
@@ -36,8 +51,11 @@ def command(output: Path, interface: str, channel: str, as_json: bool) -> None:
 
     Example: tcs-hil demo --output runs/demo
     """
-    output.mkdir(parents=True, exist_ok=True)
-    with progress_bar("starting") as advance:
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigError(f"{output}: cannot be made ({error.strerror})") from error
+    with progress_bar("starting") as advance, interrupted_by_sigterm():
         demo = run_demo(output, interface, channel, advance)
     page = output / "index.html"
     write_page(page, demo)
@@ -47,10 +65,28 @@ def command(output: Path, interface: str, channel: str, as_json: bool) -> None:
     if as_json:
         click.echo(figures)
         return
-    table = Table(title=f"{demo.bus}; {describe_machine()}")
-    for heading in COLUMNS:
-        table.add_column(heading, justify="right")
-    for outcome in demo.outcomes:
-        table.add_row(*row(outcome))
-    Console().print(table)
+    _show(demo)
     click.echo(f"figures, recordings and page: {page}")
+
+
+def _show(demo: Demo) -> None:
+    """One table where it fits, else slip and timing one below the other."""
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=WIDE)
+    console.print(f"{demo.bus}; {describe_machine()}")
+    if console.width >= WIDE:
+        console.print(_table(COLUMNS, demo.outcomes))
+        return
+    console.print(_table(RUN_COLUMNS | SLIP_COLUMNS, demo.outcomes))
+    timed = [outcome for outcome in demo.outcomes if outcome.mode == "realtime"]
+    console.print(_table(RUN_COLUMNS | TIMING_COLUMNS, timed))
+
+
+def _table(columns: Columns, outcomes: Iterable[Outcome]) -> Table:
+    table = Table()
+    for heading in columns:
+        table.add_column(heading, justify="right", overflow="fold")
+    for outcome in outcomes:
+        table.add_row(*row(outcome, columns))
+    return table

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
-from tcs_hil.canbus.bus import open_bus
+from tcs_hil.canbus.bus import choose_interface, open_bus
 from tcs_hil.hil.figures import save_prediction_figure, save_slip_figure
 from tcs_hil.hil.metrics import SlipMetrics, Truth, slip_metrics
 from tcs_hil.hil.paper import MANOEUVRES
@@ -46,12 +47,18 @@ class Demo:
     figures: dict[str, Path]
 
 
-def run_demo(folder: Path, interface: str, channel: str, progress: Progress) -> Demo:
+def run_demo(folder: Path, interface: str, channel: str | None, progress: Progress) -> Demo:
     """Run everything into ``folder``; ``progress`` hears of the share done and what is next.
+
+    Without a ``channel`` it is vcan0 where that is a real interface, else one of
+    the embedded bus that nobody else uses.
 
     Raises:
         TcsError: the bus cannot be opened or one of the programs failed.
     """
+    if channel is None:
+        found, _ = choose_interface(interface, "vcan0")
+        channel = f"vcan-demo-{os.getpid()}" if found == "embedded" else "vcan0"
     bus, description = open_bus(interface, channel)
     bus.shutdown()
     plans = list(_plans(folder, interface, channel))

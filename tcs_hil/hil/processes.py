@@ -11,6 +11,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 from tcs_hil.errors import TcsError
 
@@ -26,11 +27,11 @@ class Program:
     """A running child; its output goes to ``log``, which an error quotes the end of."""
 
     def __init__(self, arguments: Sequence[str], log: Path, environment: dict[str, str]) -> None:
-        self._name = arguments[0]
+        self._name = " ".join(arguments[:2])
         self._log = log
         with log.open("wb") as output:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", *arguments],
+                [sys.executable, "-m", "tcs_hil.hil.child", *arguments],
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 stdin=subprocess.DEVNULL,
@@ -49,6 +50,16 @@ class Program:
             raise ProcessError(f"{self._name} still runs after {timeout_s:g} s") from None
         if status != 0:
             raise self.failure(f"ended with status {status}")
+
+    def end(self) -> None:
+        """Stop it as a matter of course.
+
+        Raises:
+            ProcessError: it had already failed, or failed in stopping.
+        """
+        self.stop()
+        if self._process.returncode != 0:
+            raise self.failure(f"ended with status {self._process.returncode}")
 
     def stop(self) -> None:
         """Ask it to stop and wait until it has; a program that will not is killed."""
@@ -77,7 +88,7 @@ def program(*arguments: str, log: Path) -> Iterator[Program]:
     """Start ``python -m arguments...``, wait until it reports READY=1, stop it at the end.
 
     Raises:
-        ProcessError: it ended or kept silent before it was ready.
+        ProcessError: it ended or kept silent before it was ready, or failed later.
     """
     with tempfile.TemporaryDirectory(prefix="tcs-hil.") as folder:
         address = str(Path(folder) / "notify")
@@ -87,6 +98,7 @@ def program(*arguments: str, log: Path) -> Iterator[Program]:
             try:
                 _await_ready(child, listener)
                 yield child
+                child.end()
             finally:
                 child.stop()
 
@@ -101,3 +113,17 @@ def _await_ready(child: Program, listener: socket.socket) -> None:
             if not child.running:
                 raise child.failure("ended before it was ready") from None
     raise child.failure(f"was not ready within {READY_TIMEOUT_S:g} s")
+
+
+@contextmanager
+def interrupted_by_sigterm() -> Iterator[None]:
+    """Let SIGTERM end the bench as Ctrl-C does: from the inside out, no program left behind."""
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    previous = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, previous)

@@ -59,9 +59,11 @@ def _calendar_offset_s(bus: can.BusABC) -> float:
 
 
 def _writer(path: Path) -> can.io.generic.MessageWriter:
+    if not path.absolute().parent.is_dir():
+        raise ConfigError(f"{path}: there is no such folder to write the recording into")
     try:
         return can.Logger(str(path))
     except OSError as error:
         raise ConfigError(f"{path}: cannot be written ({error.strerror})") from error
-    except ValueError as error:
-        raise ConfigError(f"{path}: no CAN recording format has this suffix") from error
+    except (ValueError, NotImplementedError) as error:
+        raise ConfigError(f"{path}: no recording format at hand has this suffix") from error

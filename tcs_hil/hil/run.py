@@ -18,6 +18,8 @@ Mode = Literal["realtime", "lockstep"]
 SERVICE_PHASE_US = 500
 """The service ticks this long after the plant: its frames have then arrived."""
 RUN_TIMEOUT_S = 120.0
+SERVICE_CONFIG = "[recorder]\nticks = 20_000\n"
+"""Room for 40 s: a recording of the default length would cost 100 MB for each run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +37,9 @@ class RunPlan:
 
 @dataclass(frozen=True, slots=True)
 class RunFiles:
-    """What a run leaves on disk: the bus, every tick of the service, the plant's truth."""
+    """What a run leaves on disk: the configuration, the bus, every tick, the plant's truth."""
 
+    config: Path
     bus: Path
     flight: Path
     truth: Path
@@ -60,8 +63,10 @@ def execute(plan: RunPlan) -> RunFiles:
     """
     plan.folder.mkdir(parents=True, exist_ok=True)
     files = RunFiles(
-        plan.folder / "bus.blf", plan.folder / "flight.tcsrec", plan.folder / "truth.npz"
+        *(plan.folder / name for name in ("service.toml", "bus.blf", "flight.tcsrec", "truth.npz"))
     )
+    files.flight.unlink(missing_ok=True)
+    files.config.write_text(SERVICE_CONFIG)
     bus = ("--interface", plan.interface, "--channel", plan.channel)
     # Started first, stopped last: the recorder sees every frame.
     with (
@@ -76,7 +81,16 @@ def execute(plan: RunPlan) -> RunFiles:
 def _service(plan: RunPlan, files: RunFiles) -> tuple[str, ...]:
     trigger = "timer" if plan.mode == "realtime" else "lockstep"
     return (
-        *("tcs_hil", "run", "--controller", plan.controller, "--trigger", trigger),
+        *(
+            "tcs_hil",
+            "run",
+            "--config",
+            str(files.config),
+            "--controller",
+            plan.controller,
+            "--trigger",
+            trigger,
+        ),
         *("--phase-us", str(SERVICE_PHASE_US), "--flight-recording", str(files.flight)),
     )
 

@@ -39,25 +39,32 @@ def _in_real_time(times: Callable[[Outcome], Percentiles | None]) -> Callable[[O
     return text
 
 
-COLUMNS: dict[str, Callable[[Outcome], str]] = {
+Columns = dict[str, Callable[[Outcome], str]]
+
+RUN_COLUMNS: Columns = {
     "manoeuvre": lambda o: o.manoeuvre,
     "controller": lambda o: o.controller.upper(),
     "pace": lambda o: "real time" if o.mode == "realtime" else "lockstep",
+}
+SLIP_COLUMNS: Columns = {
     "slip RMSE": lambda o: _slip(o.slip.rmse_ratio),
     "peak slip": lambda o: _slip(o.slip.peak_ratio),
     "final km/h": lambda o: f"{o.slip.final_speed_mps * 3.6:.1f}",
     "mean |dT/dt| Nm/s": lambda o: f"{o.slip.chatter_nmps:.0f}",
+}
+TIMING_COLUMNS: Columns = {
     "law mean / max µs": _law,
     "paper's mean / max µs": _paper,
     "latency p50 / p99 / p99.9 / max µs": _in_real_time(lambda o: o.timing.latency),
     "jitter p50 / p99 / p99.9 / max µs": _in_real_time(lambda o: o.timing.wake_jitter),
     "overruns": lambda o: str(o.timing.overruns) if o.mode == "realtime" else "-",
 }
+COLUMNS: Columns = RUN_COLUMNS | SLIP_COLUMNS | TIMING_COLUMNS
 
 
-def row(outcome: Outcome) -> list[str]:
-    """One run's cells, in the order of ``COLUMNS``."""
-    return [text(outcome) for text in COLUMNS.values()]
+def row(outcome: Outcome, columns: Columns = COLUMNS) -> list[str]:
+    """One run's cells, in the order of ``columns``."""
+    return [text(outcome) for text in columns.values()]
 
 
 def markdown(outcomes: Iterable[Outcome]) -> str:

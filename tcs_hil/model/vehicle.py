@@ -6,7 +6,8 @@ from typing import Annotated
 
 import msgspec
 
-Positive = Annotated[float, msgspec.Meta(gt=0.0)]
+Positive = Annotated[float, msgspec.Meta(ge=1e-6, le=1e6)]
+"""Of any quantity of a car in SI units; what lies outside is a slip of the pen."""
 
 GRAVITY_MPS2 = 9.81
 

@@ -29,11 +29,12 @@ from tcs_hil.runtime.recording import (
 class FlightRecorder:
     """Writer of one recording of a fixed size; the newest ``capacity`` ticks are kept.
 
-    An existing file is kept as ``*.previous``: the service that is restarted
-    after a crash must not erase what led to it.
+    An existing recording is kept as ``*.previous``: the service that is restarted
+    after a crash must not erase what led to it.  Any other file is left alone.
 
     Raises:
-        RecordingError: the file cannot be made or the disk has no room for it.
+        RecordingError: the file cannot be made, is not ours to replace, or the disk
+            has no room for it.
     """
 
     def __init__(self, path: Path, run: RunInfo, capacity: int) -> None:
@@ -69,18 +70,34 @@ class FlightRecorder:
 def _create(path: Path, size: int) -> mmap.mmap:
     """Reserve ``size`` bytes now: a disk that fills up later would end the tick with SIGBUS."""
     try:
-        if path.exists():
-            path.replace(path.with_name(f"{path.name}.previous"))
+        _put_aside(path)
         with path.open("x+b") as file:
-            return _reserved(file.fileno(), size)
+            return _reserved(path, file.fileno(), size)
     except OSError as error:
-        path.unlink(missing_ok=True)
         raise RecordingError(
             f"{path}: no flight recording of {size / 1e6:.0f} MB ({error.strerror})"
         ) from error
 
 
-def _reserved(descriptor: int, size: int) -> mmap.mmap:
-    os.posix_fallocate(descriptor, 0, size)
+def _put_aside(path: Path) -> None:
+    """Keep an earlier recording; a file of any other kind was named by mistake."""
+    if not path.exists():
+        return
+    if not path.is_file() or not _begins_with_magic(path):
+        raise RecordingError(f"{path}: exists and is not a flight recording")
+    path.replace(path.with_name(f"{path.name}.previous"))
+
+
+def _begins_with_magic(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(len(MAGIC)) == MAGIC
+
+
+def _reserved(path: Path, descriptor: int, size: int) -> mmap.mmap:
+    try:
+        os.posix_fallocate(descriptor, 0, size)
+    except OSError:
+        path.unlink()
+        raise
     # Populated, so that the first lap of the ring takes no page faults.
     return mmap.mmap(descriptor, size, mmap.MAP_SHARED | mmap.MAP_POPULATE)

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import signal
+import time
 from types import FrameType
 from typing import Self
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT)
+INSISTING_S = 0.5
 
 
 class StopRequest:
     """Context in which SIGTERM and SIGINT only set a flag, so that a tick is never cut in two.
 
-    The second signal finds the default action back in place and ends the
-    process even if the loop no longer turns.  Main thread only.
+    A second signal, half a second or more after the first, has the default action
+    and ends the process even if the loop no longer turns.  Sooner it is the same
+    wish said twice: `timeout` signals the process and then its group.  Main thread only.
     """
 
     def __init__(self) -> None:
-        self._requested = False
+        self._requested_s: float | None = None
         self._previous = {number: signal.getsignal(number) for number in SIGNALS}
 
     def requested(self) -> bool:
         """Whether somebody has asked the process to end."""
-        return self._requested
+        return self._requested_s is not None
 
     def __enter__(self) -> Self:
         for number in SIGNALS:
@@ -33,7 +36,10 @@ class StopRequest:
         for number, handler in self._previous.items():
             signal.signal(number, handler)
 
-    def _ask(self, _number: int, _frame: FrameType | None) -> None:
-        self._requested = True
-        for number in SIGNALS:
+    def _ask(self, number: int, _frame: FrameType | None) -> None:
+        now_s = time.monotonic()
+        if self._requested_s is None:
+            self._requested_s = now_s
+        elif now_s - self._requested_s >= INSISTING_S:
             signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)

@@ -206,3 +206,18 @@ def test_a_frame_takes_the_bits_of_the_textbook(length):
 @pytest.mark.parametrize(("bitrate", "limit"), [(500_000, 0.60), (1_000_000, 0.35)])
 def test_the_bus_load_stays_within_the_contract(bitrate, limit):
     assert 0.1 < bus_load_ratio(load_database(), bitrate) < limit
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes", "culprit"),
+    [
+        ("(0.125,0) [0|511.75]", "(0.125,0) [0|1e400]", "DriverTorqueRequestL"),
+        ("(0.125,0) [0|511.75]", "(1e400,0) [0|511.75]", "DriverTorqueRequestL"),
+        ('BA_ "E2EProfile" BO_ 152 1;', 'BA_ "E2EProfile" BO_ 152 7;', "DriverRequest"),
+    ],
+)
+def test_numbers_that_make_no_sense_are_refused_by_name(
+    tmp_path: Path, was: str, becomes: str, culprit: str
+) -> None:
+    assert was in GOOD
+    assert culprit in refusal(tmp_path, GOOD.replace(was, becomes))

@@ -1,10 +1,14 @@
 import os
+import signal
+import subprocess
+import sys
 import textwrap
+import time
 from pathlib import Path
 
 import pytest
 
-from tcs_hil.hil.processes import ProcessError, program
+from tcs_hil.hil.processes import ProcessError, Program, program
 
 
 @pytest.fixture
@@ -19,11 +23,17 @@ def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     return write
 
 
+OBEY = "import signal, sys; signal.signal(15, lambda *_: sys.exit(0))\n"
 READY = "from tcs_hil.runtime.notify import notify; notify('READY=1')\n"
 
 
+def wait_until_dead(child: Program) -> None:
+    while child.running:
+        time.sleep(0.001)  # it is on its way out: it kills itself
+
+
 def test_a_program_is_ready_when_it_says_so_and_stops_when_asked(script, tmp_path: Path) -> None:
-    name = script(READY + "import signal; signal.pause()")
+    name = script(OBEY + READY + "signal.pause()")
     with program(name, log=tmp_path / "log") as child:
         assert child.running
     assert not child.running
@@ -41,14 +51,42 @@ def test_a_program_that_ends_before_it_is_ready_is_quoted(script, tmp_path: Path
 def test_a_program_that_fails_in_the_run_is_quoted(script, tmp_path: Path) -> None:
     name = script(READY + "import sys; sys.exit('broken')")
     with (
-        program(name, log=tmp_path / "log") as child,
         pytest.raises(ProcessError, match="ended with status 1: broken"),
+        program(name, log=tmp_path / "log") as child,
     ):
         child.wait(20.0)
 
 
+def test_a_program_that_died_unnoticed_is_an_error_at_the_end(script, tmp_path: Path) -> None:
+    name = script(READY + "import os, signal; os.kill(os.getpid(), signal.SIGKILL)")
+    with (
+        pytest.raises(ProcessError, match="ended with status -9"),
+        program(name, log=tmp_path / "log") as child,
+    ):
+        wait_until_dead(child)
+
+
+def test_a_program_does_not_outlive_a_bench_that_is_killed(script, tmp_path: Path) -> None:
+    name = script("import os; print(os.getpid(), flush=True)\n" + OBEY + READY + "signal.pause()")
+    log = tmp_path / "log"
+    bench = textwrap.dedent(f"""
+        from pathlib import Path
+        import os, signal
+        from tcs_hil.hil.processes import program
+        with program({name!r}, log=Path({str(log)!r})):
+            os.kill(os.getpid(), signal.SIGKILL)
+    """)
+    killed = subprocess.run([sys.executable, "-c", bench], check=False)
+    assert killed.returncode == -signal.SIGKILL
+    orphan = int(log.read_text())
+    deadline_s = time.monotonic() + 20.0
+    while Path(f"/proc/{orphan}").exists() and time.monotonic() < deadline_s:
+        time.sleep(0.01)  # the kernel has sent the signal; the interpreter needs a moment to end
+    assert not Path(f"/proc/{orphan}").exists()
+
+
 def test_a_program_that_never_ends_is_given_up(script, tmp_path: Path) -> None:
-    name = script(READY + "import signal; signal.pause()")
+    name = script(OBEY + READY + "signal.pause()")
     with (
         program(name, log=tmp_path / "log") as child,
         pytest.raises(ProcessError, match="still runs"),

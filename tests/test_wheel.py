@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("tcs_hil", "plant_emulator")
 NOT_SOURCES = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "build", "dist", "runs")
-KINDS_OF_DATA = {".dbc", ".npz", ".toml"}
+KINDS_OF_DATA = {".dbc", ".j2", ".npz", ".toml"}
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,9 @@ hang on it, react there: in a steady state the load transfer is m a h / L exactl
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
+
+from msgspec import Meta
 
 from plant_emulator.bounds import NonNegative, Positive, Table
 from plant_emulator.compiled import compiled
@@ -31,7 +33,7 @@ class Body(Table, frozen=True):
     cg_behind_front_axle_m: Positive = 1.29
     cg_height_m: Positive = 0.526
     wheel_radius_m: Positive = 0.318
-    wheel_inertia_kgm2: Positive = 0.95
+    wheel_inertia_kgm2: Annotated[float, Meta(ge=0.2)] = 0.95
     pitch_inertia_kgm2: Positive = 1900.0
     front_stiffness_npm: Positive = 40_000.0  # both springs of the axle
     rear_stiffness_npm: Positive = 42_000.0

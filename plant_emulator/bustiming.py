@@ -76,7 +76,9 @@ class VirtualBus:
 
     def __init__(self, timing: BusTiming) -> None:
         self._timing = timing
-        self._rng = np.random.default_rng(timing.seed)
+        # Two streams: how time is cut must not change what is drawn.
+        self._strangers = np.random.default_rng([timing.seed, 0])
+        self._losses = np.random.default_rng([timing.seed, 1])
         self._bit_ns = 1e9 / timing.bitrate if timing.bitrate else 0.0
         self._order = 0
         self._queued: list[tuple[int, BusFrame]] = []  # by the time they are offered
@@ -126,18 +128,18 @@ class VirtualBus:
 
     def _offer_strangers(self, until_ns: int) -> None:
         while self._stranger_ns <= until_ns:
-            frame_id = int(self._rng.integers(0x800))
-            self.offer(int(self._stranger_ns), frame_id, self._rng.bytes(8), Sender.STRANGER)
+            frame_id = int(self._strangers.integers(0x800))
+            self.offer(int(self._stranger_ns), frame_id, self._strangers.bytes(8), Sender.STRANGER)
             self._stranger_ns = self._next_stranger(self._stranger_ns)
 
     def _next_stranger(self, after_ns: float) -> float:
         load = self._timing.background_load
         if load == 0.0 or self._bit_ns == 0.0:
             return math.inf
-        return after_ns + self._rng.exponential(STRANGER_BITS * self._bit_ns / load)
+        return after_ns + self._strangers.exponential(STRANGER_BITS * self._bit_ns / load)
 
     def _reaches_us(self, frame: BusFrame) -> bool:
         if frame.sender is Sender.STRANGER:
             return False
         ratio = self._timing.loss_ratio
-        return ratio == 0.0 or bool(self._rng.random() >= ratio)
+        return ratio == 0.0 or bool(self._losses.random() >= ratio)

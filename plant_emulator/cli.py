@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import signal
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn, cast
+from typing import Any, cast
 
 import click
 import msgspec
 
 from plant_emulator.scenario import Variant, list_scenarios, load_scenario
 from plant_emulator.session import Options, Summary, run
-from tcs_hil.errors import TcsError
+from tcs_hil import console
+from tcs_hil.runtime.stop import StopRequest
 
 RUN_EXAMPLE = """\b
 Example:
@@ -44,11 +43,14 @@ def cli() -> None:
     help="Pace: a 2 ms grid of the monotonic clock, or the answers of `tcs-hil run`.",
 )
 @click.option(
-    "--phase-us", default=0, help="Shift of the 2 ms grid against the monotonic clock's, in us."
+    "--phase-us",
+    type=click.IntRange(0, 2000),
+    default=0,
+    help="Shift of the 2 ms grid against the monotonic clock's, in us.",
 )
 @click.option("--interface", default="auto", show_default=True, help="As in python-can, or `auto`.")
 @click.option("--channel", default="vcan0", show_default=True, help="As in python-can.")
-@click.option("--bitrate", default=None, type=int, help="As in python-can.")
+@click.option("--bitrate", type=click.IntRange(min=1), help="As in python-can.")
 @click.option(
     "--record", type=click.Path(path_type=Path), help="Write the truth to this .npz file."
 )
@@ -58,7 +60,8 @@ def run_command(scenario: str, vehicle: str | None, as_json: bool, **options: An
     plan = load_scenario(scenario)
     if vehicle is not None:
         plan = plan.with_variant(cast(Variant, vehicle))
-    summary = run(plan, Options(**options), _stop_on_signal(), _say)
+    with StopRequest() as stop:
+        summary = run(plan, Options(**options), stop.requested, _say)
     click.echo(msgspec.json.encode(summary).decode() if as_json else _sentence(summary))
 
 
@@ -82,22 +85,8 @@ def list_command(as_json: bool) -> None:
 
 
 def main() -> None:
-    """Run the command line; a user's mistake is one sentence on stderr and exit status 2."""
-    try:
-        cli.main(prog_name="plant-emulator", standalone_mode=False)
-    except click.exceptions.Exit as done:
-        sys.exit(done.exit_code)
-    except click.ClickException as error:
-        _refuse(error.format_message())
-    except click.Abort:
-        _refuse("interrupted")
-    except TcsError as error:
-        _refuse(str(error))
-
-
-def _refuse(sentence: str) -> NoReturn:
-    click.echo(f"plant-emulator: error: {sentence}", err=True)
-    sys.exit(2)
+    """Entry point of ``plant-emulator``."""
+    sys.exit(console.run(cli, "plant-emulator"))
 
 
 def _say(line: str) -> None:
@@ -110,11 +99,3 @@ def _sentence(summary: Summary) -> str:
         f"wake jitter p50 {summary.jitter_p50_us:.0f} us, p99 {summary.jitter_p99_us:.0f} us, "
         f"max {summary.jitter_max_us:.0f} us"
     )
-
-
-def _stop_on_signal() -> Callable[[], bool]:
-    """Let SIGTERM and SIGINT end the run at the next tick; returns the question to ask."""
-    caught: list[int] = []
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda number, _: caught.append(number))
-    return lambda: bool(caught)

@@ -23,7 +23,7 @@ class Driveline(Table, frozen=True):
     """
 
     gear_ratio: Positive = 3.0
-    motor_inertia_kgm2: Positive = 0.03
+    motor_inertia_kgm2: Annotated[float, Meta(ge=0.005)] = 0.03
     motor_lag_s: Annotated[float, Meta(ge=0.0, le=0.05)] = 0.005
     motor_torque_max_nm: Positive = 250.0
     motor_power_max_w: Positive = 80_000.0

@@ -84,8 +84,11 @@ def pass_edges(
 ) -> None:
     """Stamp the edges a wheel passes in one integration step, in either direction.
 
-    Within a step of 0.1 ms the speed is constant as far as a stamp can tell.
+    Within a step of 0.1 ms the speed is constant as far as a stamp can tell, and
+    no wheel makes a whole turn: an angle that jumps or is NaN passes nothing.
     """
+    if not abs(after_rad - before_rad) < TURN_RAD:
+        return
     marks = encoder.marks[wheel]
     while after_rad >= marks[ABOVE]:
         moment_s = start_s + h * (marks[ABOVE] - before_rad) / (after_rad - before_rad)

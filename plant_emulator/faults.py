@@ -80,7 +80,7 @@ class Fault(Table, frozen=True):
     target: str
     kind: Kind
     start_s: NonNegative = 0.0
-    end_s: Positive = math.inf
+    end_s: Positive | None = None
     low: float = 0.0
     high: float = 300.0
     offset: float = 0.0
@@ -100,12 +100,17 @@ class Fault(Table, frozen=True):
             raise ValueError(f"`target` {self.target!r} is no signal, message, motor or node")
         if self.kind not in _KINDS_OF[self.target]:
             raise ValueError(f"`kind` {self.kind!r} does not exist for `target` {self.target!r}")
-        if self.end_s <= self.start_s:
+        if self.end <= self.start_s:
             raise ValueError("`end_s` must be greater than `start_s`")
+
+    @property
+    def end(self) -> float:
+        """When it ends; infinite for a fault that lasts."""
+        return math.inf if self.end_s is None else self.end_s
 
     def active(self, time_s: float) -> bool:
         """Whether the fault is there at ``time_s``."""
-        if not self.start_s <= time_s < self.end_s:
+        if not self.start_s <= time_s < self.end:
             return False
         if self.kind != "intermittent":
             return True
@@ -114,5 +119,5 @@ class Fault(Table, frozen=True):
 
 def next_boundary(faults: Iterable[Fault], time_s: float) -> float:
     """First start or end of any of ``faults`` after ``time_s``; infinite if there is none."""
-    edges = (edge for fault in faults for edge in (fault.start_s, fault.end_s))
+    edges = (edge for fault in faults for edge in (fault.start_s, fault.end))
     return min((edge for edge in edges if edge > time_s), default=math.inf)

@@ -31,7 +31,7 @@ class MotorFaults:
 
     def next_change(self, time_s: float) -> float:
         """When a fault next begins or ends."""
-        return next_boundary(self._faults, time_s)
+        return next_boundary(self._faults, time_s) if self._faults else math.inf
 
     def apply(self, demand: Demand, time_s: float) -> Demand:
         """What the inverters make of ``demand`` from ``time_s`` on."""

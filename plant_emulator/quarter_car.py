@@ -8,12 +8,13 @@ vehicle speed.  The rear wheels roll freely.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_emulator.bounds import Positive, Table
-from plant_emulator.compiled import compiled, record
+from plant_emulator.compiled import compiled, records
 from plant_emulator.inverter import Demand, demanded
 from plant_emulator.road import MU_LEFT, MU_RIGHT, patch_at
 from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
@@ -93,7 +94,7 @@ def derivative(
 def advance(
     state: NDArray[np.float64],  # (4,), advanced in place
     demand: Demand,
-    car: QuarterCar,
+    cars: Sequence[QuarterCar],  # one
     road: NDArray[np.float64],  # (patches, 5)
     duration_s: float,
     work: Work,
@@ -102,6 +103,7 @@ def advance(
 
     Friction is that of the patch at the beginning of a step.
     """
+    car = cars[0]
     steps = steps_for(duration_s)
     h = duration_s / steps
     for step in range(steps):
@@ -120,7 +122,7 @@ class QuarterCarPlant:
     """State of a quarter car on a road; its sensors are ideal."""
 
     def __init__(self, car: QuarterCar, road: NDArray[np.float64], speed_mps: float) -> None:
-        self._car = record(car)
+        self._car = records(car)
         self._road = road
         omega = speed_mps / car.wheel_radius_m
         self._state = np.array([speed_mps, omega, omega, 0.0])
@@ -139,10 +141,11 @@ class QuarterCarPlant:
 def _observe(
     state: NDArray[np.float64],
     demand: Demand,
-    car: QuarterCar,
+    cars: Sequence[QuarterCar],
     road: NDArray[np.float64],
     row: Row,
 ) -> None:
+    car = cars[0]
     patch = road[patch_at(road, state[POSITION])]
     torque = demanded(demand, 0.0)
     total_n = 0.0

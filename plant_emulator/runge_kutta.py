@@ -19,7 +19,7 @@ STAGES = (0.0, 0.5, 0.5, 1.0)
 
 
 class Work(NamedTuple):
-    """Arrays a step works in, made once so that compiled code allocates nothing."""
+    """Arrays a step works in, made once so that nothing is allocated while driving."""
 
     rates: NDArray[np.float64]  # (4, states), derivative in each stage
     trial: NDArray[np.float64]  # (states,), what a stage looks at

@@ -17,6 +17,7 @@ from plant_emulator.driver import Driver
 from plant_emulator.faults import Fault
 from plant_emulator.quarter_car import QuarterCar
 from plant_emulator.road import Patch
+from plant_emulator.road_file import read_road
 from plant_emulator.sensors import Sensors
 from plant_emulator.tir import read_tir
 from plant_emulator.tyre import Tyre
@@ -75,7 +76,11 @@ class Expect(Table, frozen=True):
 
 
 class Scenario(Table, frozen=True):
-    """Everything about one run; it ends at ``duration_s`` or at ``end_distance_m``."""
+    """Everything about one run; it ends at ``duration_s`` or at ``end_distance_m``.
+
+    ``road_file`` is a CSV file of patches, relative to the scenario's; it takes the
+    place of ``[[road]]``.
+    """
 
     description: str
     driver: Driver
@@ -83,6 +88,7 @@ class Scenario(Table, frozen=True):
     end_distance_m: Positive | None = None
     start_speed_kmph: Annotated[float, Meta(ge=0.0, le=200.0)] = 0.0
     vehicle: VehicleTable = VehicleTable()
+    road_file: str | None = None
     road: Annotated[tuple[Patch, ...], Meta(min_length=1)] = (Patch(mu=1.0),)
     sensors: Sensors = Sensors()
     bus: BusTiming = BusTiming()
@@ -128,11 +134,14 @@ def load_scenario(name_or_path: str | Path) -> Scenario:
     """
     path = _find(name_or_path)
     scenario = read_toml(path, Scenario)
-    if scenario.vehicle.tyre_file is None:
-        return scenario
-    tyre = read_tir(path.parent / scenario.vehicle.tyre_file)
-    vehicle = msgspec.structs.replace(scenario.vehicle, tyre=tyre)
-    return msgspec.structs.replace(scenario, vehicle=vehicle)
+    if scenario.vehicle.tyre_file is not None:
+        tyre = read_tir(path.parent / scenario.vehicle.tyre_file)
+        vehicle = msgspec.structs.replace(scenario.vehicle, tyre=tyre)
+        scenario = msgspec.structs.replace(scenario, vehicle=vehicle)
+    if scenario.road_file is not None:
+        road = read_road(path.parent / scenario.road_file)
+        scenario = msgspec.structs.replace(scenario, road=road)
+    return scenario
 
 
 def list_scenarios() -> list[Listing]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated
 
 import numpy as np
@@ -73,7 +74,7 @@ class SensorSet:
         rolling: WheelMotion | None = None,
     ) -> None:
         self._sensors = sensors
-        self._rng = rng
+        self._noise = _draws(rng)
         self._encoder = encoder
         self._unit: SpeedUnit | None = None
         if sensors.teeth and encoder is not None and rolling is not None:
@@ -81,13 +82,12 @@ class SensorSet:
 
     def sample(self, row: Row) -> VehicleSignals:
         """Read every sensor at the instant of a row of the truth."""
-        sensors = self._sensors
-        noise = self._rng.standard_normal(5).tolist()
-        motor_left, motor_right = row[MOTOR_SPEED : MOTOR_SPEED + 2].tolist()
-        torque_left, torque_right = row[MOTOR_TORQUE : MOTOR_TORQUE + 2].tolist()
-        request_nm = float(row[REQUEST])
+        sensors, noise, values = self._sensors, next(self._noise), row.tolist()
+        motor_left, motor_right = values[MOTOR_SPEED : MOTOR_SPEED + 2]
+        torque_left, torque_right = values[MOTOR_TORQUE : MOTOR_TORQUE + 2]
+        request_nm = values[REQUEST]
         speed_noise, torque_noise = sensors.motor_speed_noise_radps, sensors.motor_torque_noise_nm
-        speeds, valid = self._wheels(row)
+        speeds, valid = self._wheels(values)
         return VehicleSignals(
             wheel_speed_radps=speeds,
             wheel_speed_valid=valid,
@@ -100,17 +100,17 @@ class SensorSet:
                 torque_right + torque_noise * noise[3],
             ),
             driver_torque_nm=(request_nm, request_nm),
-            accel_x_mps2=self._accel(float(row[SPECIFIC_FORCE]), noise[4]),
+            accel_x_mps2=self._accel(values[SPECIFIC_FORCE], noise[4]),
         )
 
-    def _wheels(self, row: Row) -> tuple[FourWheels, tuple[bool, bool, bool, bool]]:
+    def _wheels(self, values: list[float]) -> tuple[FourWheels, tuple[bool, bool, bool, bool]]:
         if self._unit is None or self._encoder is None:
-            speeds = np.abs(row[WHEEL_SPEED : WHEEL_SPEED + 4])
+            speeds = [abs(speed) for speed in values[WHEEL_SPEED : WHEEL_SPEED + 4]]
         else:
-            sample_speeds(self._unit, self._encoder, row[TIME])
-            speeds = self._unit.speed_radps
+            sample_speeds(self._unit, self._encoder, values[TIME])
+            speeds = self._unit.speed_radps.tolist()
         least = self._sensors.speed_min_radps
-        fl, fr, rl, rr = (speed if speed >= least else 0.0 for speed in speeds.tolist())
+        fl, fr, rl, rr = (speed if speed >= least else 0.0 for speed in speeds)
         return (fl, fr, rl, rr), (fl >= least, fr >= least, rl >= least, rr >= least)
 
     def _accel(self, specific_force_mps2: float, noise: float) -> float | None:
@@ -118,3 +118,9 @@ class SensorSet:
         if not sensors.accelerometer:
             return None
         return specific_force_mps2 + sensors.accel_bias_mps2 + sensors.accel_noise_mps2 * noise
+
+
+def _draws(rng: np.random.Generator) -> Iterator[list[float]]:
+    """Yield five standard normal numbers at a time, drawn by the thousand: it is quicker."""
+    while True:
+        yield from rng.standard_normal((200, 5)).tolist()

@@ -17,6 +17,7 @@ from plant_emulator.plant import Plant
 from plant_emulator.realtime import Jitter, run_realtime
 from plant_emulator.recording import TruthRecorder
 from plant_emulator.scenario import Scenario
+from plant_emulator.undisturbed import undisturbed
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.port import CanPort
@@ -69,8 +70,11 @@ def run(
         live = options.mode == "realtime"
         emulator = Emulator(plant, VehicleNode(load_database()), port, recorder, live=live)
         notify("READY=1")
-        jitter_ns = _drive(emulator, port, options, stop)
-    recorder.save(jitter_ns)
+        jitter_ns = np.empty(0, np.int64)
+        try:
+            jitter_ns = _drive(emulator, port, options, stop)
+        finally:  # a run that a silent service cut short is worth looking at, too
+            recorder.save(jitter_ns)
     return _summary(plant, jitter_ns)
 
 
@@ -85,7 +89,8 @@ def _drive(emulator: Emulator, port: CanPort, options: Options, stop: Callable[[
     if options.mode == "lockstep":
         run_lockstep(emulator, port, stop)
         return np.empty(0, np.int64)
-    return run_realtime(emulator, port, MonotonicClock(), stop, options.phase_us * 1000)
+    with undisturbed():
+        return run_realtime(emulator, port, MonotonicClock(), stop, options.phase_us * 1000)
 
 
 def _summary(plant: Plant, jitter_ns: Jitter) -> Summary:

@@ -34,6 +34,9 @@ _RELAXATION = ("PTX1", "LSGKP", "UNLOADED_RADIUS")
 _USED = {*(name.upper() for name in (*_SCALES, "pex4", "pkx3")), *_RELAXATION}
 _USED |= {factor for factors in _SCALES.values() for factor in factors}
 
+_UNITS = ("FORCE", "LENGTH", "ANGLE", "MASS", "TIME")
+_SI = ("newton", "meter", "metre", "radian", "radians", "kg", "kilogram", "second", "n", "m", "s")
+
 _REQUIRED = ("fnomin", "pcx1", "pdx1", "pkx1")
 
 
@@ -74,7 +77,11 @@ def _read_table(path: Path) -> dict[str, float]:
     table = {}
     for line in text.splitlines():
         found = _LINE.match(line)
-        if found is None or found[1].upper() not in _USED:
+        if found is None:
+            continue
+        if found[1].upper() in _UNITS and found[2].strip("'\"").lower() not in _SI:
+            raise ConfigError(f"{path}: {found[1]} is in {found[2]}; only SI units are read")
+        if found[1].upper() not in _USED:
             continue
         try:
             table[found[1].upper()] = float(found[2])

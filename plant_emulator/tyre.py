@@ -18,6 +18,7 @@ from plant_emulator.compiled import compiled
 
 LOW_SPEED_MPS = 0.5
 ROLLING_SPEED_MPS = 0.1
+SHORTEST_M = 0.01
 
 Relaxation = Annotated[float, Meta(ge=0.0, le=1.0)]
 
@@ -29,8 +30,10 @@ class Tyre(Table, frozen=True):
     load as published for a 205/60R15 (pDx2 = -0.083: Pacejka, 3rd ed., App. 3),
     the stiffness grows in proportion to it.
 
-    ``relaxation_m`` is the length the contact patch needs to follow the slip; 0
-    switches the lag off, and with it the ability to stand still under load.
+    ``relaxation_m`` is the length the contact patch needs to follow the slip, at
+    small slip; it shrinks as the curve bends, because a sliding patch needs no
+    deflection.  0 switches the lag off, and with it the ability to stand still
+    under load.
     ``low_speed_damping_nspm`` (per tyre) damps the patch below 0.5 m/s, where a
     tyre is a spring.
     """
@@ -56,11 +59,9 @@ class Tyre(Table, frozen=True):
 
 
 @compiled
-def slip_stiffness(tyre: Tyre, load_n: float, dfz: float) -> float:
-    """K_x = dF_x / dkappa at the origin, N per unit slip, on mu = 1.
-
-    ``dfz`` is the load relative to nominal, minus one.
-    """
+def slip_stiffness(tyre: Tyre, load_n: float) -> float:
+    """K_x = dF_x / dkappa at the origin, N per unit slip, on mu = 1."""
+    dfz = load_n / tyre.fnomin - 1.0
     stiffness_n = load_n * (tyre.pkx1 + tyre.pkx2 * dfz)
     return stiffness_n * math.exp(tyre.pkx3 * dfz) if tyre.pkx3 != 0.0 else stiffness_n
 
@@ -77,7 +78,7 @@ def tyre_force(tyre: Tyre, kappa: float, load_n: float, mu: float, peak_only: bo
     dfz = load_n / tyre.fnomin - 1.0
     of_peak, of_curve = (mu, 1.0) if peak_only else (1.0, mu)
     d = load_n * (tyre.pdx1 + tyre.pdx2 * dfz) * of_peak
-    b = slip_stiffness(tyre, load_n, dfz) / (tyre.pcx1 * d)
+    b = slip_stiffness(tyre, load_n) / (tyre.pcx1 * d)
     shifted = kappa + tyre.phx1 + tyre.phx2 * dfz
     x = b * shifted
     e = tyre.pex1 + tyre.pex2 * dfz + tyre.pex3 * dfz * dfz
@@ -89,19 +90,31 @@ def tyre_force(tyre: Tyre, kappa: float, load_n: float, mu: float, peak_only: bo
 
 
 @compiled
+def relaxation_length(tyre: Tyre, kappa: float, force_n: float, stiffness_n: float) -> float:
+    """Relaxation length at a slip ratio, m: in proportion to the curve's secant.
+
+    ``force_n`` and ``stiffness_n`` are on the same road.  (Pacejka, Ch. 7, the
+    nonlinear single-point model.)  Never below 1 cm, which a step of 0.1 ms can
+    follow at any speed.
+    """
+    straight_n = stiffness_n * kappa
+    secant = force_n / straight_n if abs(straight_n) > 1.0 else 1.0
+    return max(tyre.relaxation_m * min(secant, 1.0), SHORTEST_M)
+
+
+@compiled
 def rolling_speed(rim_mps: float, speed_mps: float) -> float:
     """Speed by which slip is defined, m/s: the rim's in driving, the car's in braking."""
     return max(abs(rim_mps), abs(speed_mps))
 
 
 @compiled
-def low_speed_slip(tyre: Tyre, slip_mps: float, rolling_mps: float, load_n: float) -> float:
+def low_speed_slip(tyre: Tyre, slip_mps: float, rolling_mps: float, stiffness_n: float) -> float:
     """Slip ratio whose force damps the contact patch near standstill; zero above 0.5 m/s."""
     if rolling_mps >= LOW_SPEED_MPS:
         return 0.0
     fade = 0.5 * (1.0 + math.cos(math.pi * rolling_mps / LOW_SPEED_MPS))
-    stiffness_n = slip_stiffness(tyre, load_n, load_n / tyre.fnomin - 1.0)
-    return fade * tyre.low_speed_damping_nspm * slip_mps / max(stiffness_n, 1.0)
+    return fade * tyre.low_speed_damping_nspm * slip_mps / stiffness_n
 
 
 @compiled
@@ -113,5 +126,9 @@ def rolling_resistance(tyre: Tyre, rim_mps: float, load_n: float, radius_m: floa
 
 @compiled
 def modified_slip(rim_mps: float, speed_mps: float) -> float:
-    """Slip ratio of the paper, Eq. (slip_mod) with epsilon = 0.1 (m/s)^2."""
-    return (rim_mps - speed_mps) * rim_mps / (rim_mps * rim_mps + 0.1)
+    """Slip ratio of the paper, Eq. (slip_mod) with epsilon = 0.1 (m/s)^2.
+
+    Taken by magnitude, so that a wheel that turns backwards under a car that
+    rolls forwards brakes.
+    """
+    return (rim_mps - speed_mps) * abs(rim_mps) / (rim_mps * rim_mps + 0.1)

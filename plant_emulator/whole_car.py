@@ -36,8 +36,10 @@ from plant_emulator.tyre import (
     Tyre,
     low_speed_slip,
     modified_slip,
+    relaxation_length,
     rolling_resistance,
     rolling_speed,
+    slip_stiffness,
     tyre_force,
 )
 from tcs_hil.signals import Pair
@@ -45,7 +47,7 @@ from tcs_hil.signals import Pair
 Array = NDArray[np.float64]
 
 SPEED, POSITION, HEAVE, HEAVE_RATE, PITCH, PITCH_RATE = range(6)
-WHEEL, ANGLE, DEFLECTION, HELD_AT = 6, 10, 14, 18  # four each
+WHEEL, ANGLE, TRANSIENT_SLIP, HELD_AT = 6, 10, 14, 18  # four each
 MOTOR_TORQUE, MOTOR_SPEED, TWIST = 22, 24, 26  # two each
 SIZE = 28
 
@@ -91,26 +93,37 @@ def _suspension(state: Array, body: Body) -> Pair:
 
 @compiled
 def _touch(state: Array, site: Site, car: WholeCar, wheel: int, row: Row, rate: Array) -> None:
-    """Tyre force, brake and rolling resistance of one wheel, and what they do to it."""
+    """What road and brake do to one wheel."""
     radius, omega, load_n = car.body.wheel_radius_m, state[WHEEL + wheel], row[LOAD + wheel]
-    rim = omega * radius
-    peak_only = site.front_peak_only if wheel < 2 else site.rear_peak_only
-    if car.tyre.relaxation_m > 0.0:
-        slip_mps, rolling_mps = rim - state[SPEED], rolling_speed(rim, state[SPEED])
-        kappa = state[DEFLECTION + wheel] / car.tyre.relaxation_m
-        rate[DEFLECTION + wheel] = slip_mps - rolling_mps * kappa
-        kappa += low_speed_slip(car.tyre, slip_mps, rolling_mps, load_n)
-    else:
-        kappa = modified_slip(rim, state[SPEED])
-    force_n = tyre_force(car.tyre, kappa, load_n, row[MU + wheel], peak_only)
+    force_n = _grip(state, site, car, wheel, row, rate)
     brake_nm = 0.0
     if not math.isnan(state[HELD_AT + wheel]):
         brake_nm = hold_torque(car.body, state[ANGLE + wheel] - state[HELD_AT + wheel], omega)
-    resistance_nm = rolling_resistance(car.tyre, rim, load_n, radius)
-    row[TYRE_SLIP + wheel], row[FORCE + wheel], row[BRAKE_TORQUE + wheel] = kappa, force_n, brake_nm
+    resistance_nm = rolling_resistance(car.tyre, omega * radius, load_n, radius)
+    row[FORCE + wheel], row[BRAKE_TORQUE + wheel] = force_n, brake_nm
     torque_nm = brake_nm - resistance_nm - force_n * radius
     rate[WHEEL + wheel] = torque_nm / car.body.wheel_inertia_kgm2
     rate[ANGLE + wheel] = omega
+
+
+@compiled
+def _grip(state: Array, site: Site, car: WholeCar, wheel: int, row: Row, rate: Array) -> float:
+    """Force of one tyre, N, and how its slip follows."""
+    tyre, speed, rim_mps = car.tyre, state[SPEED], state[WHEEL + wheel] * car.body.wheel_radius_m
+    load_n, mu = row[LOAD + wheel], row[MU + wheel]
+    peak_only = site.front_peak_only if wheel < 2 else site.rear_peak_only
+    if tyre.relaxation_m == 0.0:
+        row[TYRE_SLIP + wheel] = modified_slip(rim_mps, speed)
+        return tyre_force(tyre, row[TYRE_SLIP + wheel], load_n, mu, peak_only)
+    stiffness_n = max(slip_stiffness(tyre, load_n) * (1.0 if peak_only else mu), 1.0)
+    slip_mps, rolling_mps = rim_mps - speed, rolling_speed(rim_mps, speed)
+    kappa = state[TRANSIENT_SLIP + wheel]
+    damping = low_speed_slip(tyre, slip_mps, rolling_mps, stiffness_n)
+    force_n = tyre_force(tyre, kappa + damping, load_n, mu, peak_only)
+    length_m = relaxation_length(tyre, kappa + damping, force_n, stiffness_n)
+    rate[TRANSIENT_SLIP + wheel] = (slip_mps - rolling_mps * kappa) / length_m
+    row[TYRE_SLIP + wheel] = kappa + damping
+    return force_n
 
 
 @compiled

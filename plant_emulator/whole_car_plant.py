@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,13 +11,13 @@ from numpy.typing import NDArray
 
 from plant_emulator import truth
 from plant_emulator.body import GRAVITY_MPS2
-from plant_emulator.compiled import compiled, record
+from plant_emulator.compiled import compiled, records
 from plant_emulator.encoder import Encoder, WheelMotion, make_encoder, pass_edges
 from plant_emulator.inverter import Demand, demanded
 from plant_emulator.road import site_at
 from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
 from plant_emulator.sensors import IDEAL, Sensors
-from plant_emulator.truth import Row
+from plant_emulator.truth import MU, ROW_SIZE, Row
 from plant_emulator.tyre import modified_slip
 from plant_emulator.whole_car import (
     ANGLE,
@@ -26,12 +28,14 @@ from plant_emulator.whole_car import (
     POSITION,
     SIZE,
     SPEED,
+    TRANSIENT_SLIP,
     TWIST,
     WHEEL,
     Array,
     WholeCar,
     derivative,
 )
+from tcs_hil.errors import ConfigError
 
 STANDSTILL_MPS = 0.05
 SETTLING_S = 3.0
@@ -49,8 +53,8 @@ class Moving(NamedTuple):
 def advance(
     moving: Moving,
     demand: Demand,
-    car: WholeCar,
-    road: NDArray[np.float64],
+    cars: Sequence[WholeCar],  # one
+    road: NDArray[np.float64],  # (patches, 5)
     start_s: float,
     duration_s: float,
 ) -> None:
@@ -59,6 +63,7 @@ def advance(
     The road is that under the car at the beginning of a step.
     """
     state, encoder, work = moving
+    car = cars[0]
     steps = steps_for(duration_s)
     h = duration_s / steps
     for step in range(steps):
@@ -82,11 +87,16 @@ def _watch_teeth(encoder: Encoder, before: Array, after: Array, start_s: float, 
 
 @compiled
 def _observe(
-    moving: Moving, demand: Demand, car: WholeCar, road: NDArray[np.float64], row: Row
+    state: Array,
+    rate: Array,
+    demand: Demand,
+    cars: Sequence[WholeCar],
+    road: NDArray[np.float64],
+    row: Row,
 ) -> None:
-    state = moving.state
+    car = cars[0]
     site = site_at(road, state[POSITION], car.body.wheelbase_m, row)
-    derivative(state, demanded(demand, 0.0), site, car, row, moving.work.rates[0])
+    derivative(state, demanded(demand, 0.0), site, car, row, rate)
     row[truth.DISTANCE], row[truth.BODY_SPEED] = state[POSITION], state[SPEED]
     row[truth.SPECIFIC_FORCE] = row[truth.ACCEL] + GRAVITY_MPS2 * (site.grade_sin + state[PITCH])
     row[truth.PITCH], row[truth.HEAVE] = state[PITCH], state[HEAVE]
@@ -108,9 +118,9 @@ class WholeCarPlant:
         self, car: WholeCar, road: NDArray[np.float64], speed_mps: float, sensors: Sensors
     ) -> None:
         self._parameters = car
-        self._car = record(car)
+        self._car = records(car)
         self._road = road
-        self._state = _rolling(car, speed_mps)
+        self._state = _rolling(car, road, speed_mps)
         self._work = work_for(SIZE)
         self._fit(IDEAL)
         if speed_mps == 0.0:
@@ -131,13 +141,22 @@ class WholeCarPlant:
         )
 
     def advance(self, demand: Demand, time_s: float, duration_s: float) -> None:
-        """Integrate over ``duration_s``."""
+        """Integrate over ``duration_s``.
+
+        Raises:
+            ConfigError: the parameters are too stiff for the integration step.
+        """
         self._hold_or_release(max(demand.request_nm))
         advance(self._moving, demand, self._car, self._road, time_s, duration_s)
+        if not math.isfinite(self._state[SPEED]):
+            raise ConfigError(
+                f"the plant diverged at {time_s:.3f} s: "
+                "parameters in [vehicle] are too stiff for steps of 0.1 ms"
+            )
 
     def observe(self, demand: Demand, row: Row) -> None:
         """Fill in every state, force and load now."""
-        _observe(self._moving, demand, self._car, self._road, row)
+        _observe(self._state, self._work.trial, demand, self._car, self._road, row)
 
     def _settle(self) -> None:
         """Let a car that starts from rest sink into its springs, held by its brakes."""
@@ -148,7 +167,7 @@ class WholeCarPlant:
     def _hold_or_release(self, request_nm: float) -> None:
         """Brake at standstill without request; let go when the request is worth the slope."""
         held = self._state[HELD_AT : HELD_AT + 4]
-        if np.isnan(held[0]):
+        if math.isnan(held[0]):
             if request_nm <= 0.0 and self._stands:
                 held[:] = self._state[ANGLE : ANGLE + 4]
         elif request_nm > self._slope_torque_nm:
@@ -170,12 +189,21 @@ class WholeCarPlant:
         return pull_n * body.wheel_radius_m / (2.0 * line.gear_ratio)
 
 
-def _rolling(car: WholeCar, speed_mps: float) -> Array:
-    """Every wheel rolling freely, springs at rest, brakes open."""
-    state = np.zeros(SIZE)
-    omega = speed_mps / car.body.wheel_radius_m
+def _rolling(car: WholeCar, road: NDArray[np.float64], speed_mps: float) -> Array:
+    """Every wheel rolling freely, springs at rest, brakes open.
+
+    Free rolling takes the little braking slip whose force turns the wheel against
+    its rolling resistance; without it the wheels would start with a jerk.
+    """
+    state, row = np.zeros(SIZE), np.zeros(ROW_SIZE)
+    site_at(road, 0.0, car.body.wheelbase_m, row)
+    slip = np.zeros(4)
+    if car.tyre.relaxation_m > 0.0 and speed_mps > 0.0:
+        slip[:] = -car.tyre.qsy1 / (car.tyre.pkx1 * row[MU : MU + 4])
+    omega = (1.0 + slip) * speed_mps / car.body.wheel_radius_m
     state[SPEED] = speed_mps
+    state[TRANSIENT_SLIP : TRANSIENT_SLIP + 4] = slip
     state[WHEEL : WHEEL + 4] = omega
-    state[MOTOR_SPEED : MOTOR_SPEED + 2] = omega * car.driveline.gear_ratio
+    state[MOTOR_SPEED : MOTOR_SPEED + 2] = omega[:2] * car.driveline.gear_ratio
     state[HELD_AT : HELD_AT + 4] = np.nan
     return state

@@ -27,6 +27,11 @@ def run(command: click.Command, program: str) -> int:
         sentence = error.format_message() if isinstance(error, click.ClickException) else str(error)
         print(f"{program}: error: {sentence}", file=sys.stderr)
         return USER_ERROR
+    except BrokenPipeError:
+        return 0  # the reader has seen enough
+    except OSError as error:  # a disk or a device, not our code
+        print(f"{program}: error: {error}", file=sys.stderr)
+        return USER_ERROR
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
     return status if isinstance(status, int) else 0

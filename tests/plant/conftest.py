@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from plant_emulator.plant import Plant
 from plant_emulator.scenario import Scenario, load_scenario
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.database import load_database
@@ -14,7 +15,7 @@ from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.signals import Command, ControllerKind, TcsState, TorqueLimits
 
 
-def command(limit_nm):
+def make_command(limit_nm):
     return Command(
         limits=TorqueLimits(limit_nm, limit_nm),
         active=(True, True),
@@ -60,9 +61,23 @@ class ScriptedService:
     def _answer(self, tick):
         now_ns = tick * 2_000_000
         self.measurements.append(self._node.measurement(now_ns))
-        for frame in self._node.frames(command(self._limit_nm), now_ns):
+        for frame in self._node.frames(make_command(self._limit_nm), now_ns):
             self._port.send(*frame)
         self._port.send(*self._node.bench_tick_done(tick))
+
+
+@pytest.fixture
+def drive():
+    """Make a plant of whole-car parameters: ``drive(request, tyre={...}, sensors={...}, ...)``."""
+
+    def make(request=((0.0, 0.0),), **tables):
+        document = {"description": "test", "duration_s": 60.0, "driver": {"request": request}}
+        document["vehicle"] = {
+            name: tables.pop(name) for name in ("body", "tyre", "driveline") if name in tables
+        }
+        return Plant(msgspec.convert(document | tables, Scenario))
+
+    return make
 
 
 @pytest.fixture
@@ -72,10 +87,16 @@ def service():
 
 
 @pytest.fixture
+def command():
+    """Make what a service says when it limits both motors: ``command(limit_nm)``."""
+    return make_command
+
+
+@pytest.fixture
 def command_frame():
     """Make the frame that carries a torque limit: ``command_frame(limit_nm)``."""
     node = TcsNode(load_database())
-    return lambda limit_nm: node.frames(command(limit_nm), 0)[-1]
+    return lambda limit_nm: node.frames(make_command(limit_nm), 0)[-1]
 
 
 @pytest.fixture

@@ -23,15 +23,15 @@ def never():
     return False
 
 
-def emulator_for(scenario, port, path=None):
-    recorder = TruthRecorder(path, scenario, PERIOD_NS * 1e-9)
-    return Emulator(Plant(scenario), VehicleNode(load_database()), port, recorder)
+def emulator_for(scenario, port, *, live=True):
+    recorder = TruthRecorder(None, scenario, PERIOD_NS * 1e-9)
+    return Emulator(Plant(scenario), VehicleNode(load_database()), port, recorder, live=live)
 
 
 def lockstep_run(scenario, channel, service, limit_nm):
     bus, _ = open_bus("embedded", channel)
     with service(channel, limit_nm) as peer, closing(CanPort(bus, send_timeout_s=1.0)) as port:
-        emulator = emulator_for(scenario, port)
+        emulator = emulator_for(scenario, port, live=False)
         run_lockstep(emulator, port, never)
     return peer, emulator.plant.truth
 
@@ -65,7 +65,7 @@ def test_frames_of_a_tick_come_by_ascending_identifier_and_bench_tick_last(
 
 def test_a_silent_service_is_named_in_one_sentence(launch, channel):
     with closing(CanPort(open_bus("embedded", channel)[0])) as port:
-        emulator = emulator_for(launch, port)
+        emulator = emulator_for(launch, port, live=False)
         with pytest.raises(BusError, match=r"no answer to tick 0 .* start `tcs-hil run"):
             run_lockstep(emulator, port, never, timeout_s=0.01)
 
@@ -73,7 +73,7 @@ def test_a_silent_service_is_named_in_one_sentence(launch, channel):
 def test_lockstep_stops_when_asked(launch, channel):
     stop = threading.Event()
     with closing(CanPort(open_bus("embedded", channel)[0])) as port:
-        emulator = emulator_for(launch, port)
+        emulator = emulator_for(launch, port, live=False)
         stop.set()
         run_lockstep(emulator, port, stop.is_set)
     assert emulator.plant.time_s == 0.0
@@ -146,6 +146,18 @@ def test_in_real_time_a_limit_acts_from_its_receive_stamp(launch, command_frame)
     ((time_s, limits),) = [entry for entry in spy if entry[1] is not None]
     assert time_s == pytest.approx(0.0047)
     assert limits == (40.0, 40.0)
+
+
+def test_in_real_time_frames_leave_when_their_last_bit_has_passed(launch):
+    clock = ScriptedClock()
+    port = ScriptedPort(clock)
+    run_realtime(emulator_for(launch.with_variant("vehicle"), port), port, clock, never)
+    ids = [frame_id for _, frame_id in port.sent[:4]]
+    assert ids == sorted(ids)
+    ends_us = [(sent_ns - PERIOD_NS) / 1000 for sent_ns, _ in port.sent[:4]]
+    gaps_us = np.diff([0.0, *ends_us])
+    # At 2 us a bit: 5, 8, 6 and 8 bytes make 90 to 136 bits, stuff bits included.
+    assert all(180 < gap < 275 for gap in gaps_us)
 
 
 def test_the_recording_is_read_with_numpy_alone(launch, tmp_path):

@@ -1,0 +1,44 @@
+"""The seam to the compiler."""
+
+import subprocess
+import sys
+
+import numpy as np
+
+from plant_emulator.bounds import Table
+from plant_emulator.compiled import compiled, records
+
+
+class Inner(Table, frozen=True):
+    b: float = 2.0
+
+
+class Outer(Table, frozen=True):
+    a: float = 1.0
+    inner: Inner = Inner()
+    n: int = 3
+    on: bool = True
+
+
+@compiled
+def total(outers):
+    outer = outers[0]
+    return outer.a + outer.inner.b * outer.n if outer.on else 0.0
+
+
+def test_compiled_code_reads_nested_structs_by_their_names():
+    assert total(records(Outer())) == 7.0
+    assert total(records(Outer(on=False))) == 0.0
+
+
+def test_division_by_zero_is_infinite_and_no_error():
+    @compiled
+    def divide(a, b):
+        return a / b
+
+    assert divide(1.0, 0.0) == np.inf
+
+
+def test_the_service_never_loads_the_compiler():
+    code = "import sys, tcs_hil.cli; sys.exit('numba' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/installed
 LOCK := requirements/lock.txt
 
-.PHONY: demo test format wheel lock clean help
+.PHONY: demo test format wheel lock install-service uninstall-service clean help
 
 help:
 	@echo 'make demo    the paper'"'"'s experiment between two processes on a CAN bus'
@@ -13,6 +13,7 @@ help:
 	@echo 'make format  mend what ruff can'
 	@echo 'make wheel   dist/*.whl'
 	@echo 'make lock    pin the newest dependencies pyproject.toml allows'
+	@echo 'make install-service, make uninstall-service   systemd units and /opt/tcs-hil (as root)'
 	@echo 'make clean   remove .venv and everything built'
 
 demo: $(STAMP)
@@ -33,6 +34,12 @@ lock: $(STAMP)
 	$(BIN)/uv pip compile pyproject.toml --group dev --output-file $(LOCK) \
 	    --universal --python-version 3.11 --generate-hashes --upgrade --no-config \
 	    --no-emit-index-url --no-annotate --custom-compile-command 'make lock'
+
+install-service:
+	scripts/install-service install
+
+uninstall-service:
+	scripts/install-service uninstall
 
 $(STAMP): pyproject.toml $(LOCK) scripts/make-venv
 	scripts/make-venv $(VENV) $(LOCK)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from tcs_hil.control.protocol import Controller, Proposal, SolveStatus
-from tcs_hil.estimator import Estimate, Estimator
+from tcs_hil.estimator import Estimate, Estimates
 from tcs_hil.gate import Gate, Permission
 from tcs_hil.signals import (
     NO_LIMIT,
@@ -44,7 +44,7 @@ class Pipeline:
     """Estimate, supervise, control, gate: the service between bytes and bytes."""
 
     def __init__(
-        self, estimator: Estimator, supervisor: Supervisor, law: Law, gates: tuple[Gate, Gate]
+        self, estimator: Estimates, supervisor: Supervisor, law: Law, gates: tuple[Gate, Gate]
     ) -> None:
         self._estimator = estimator
         self._supervisor = supervisor
@@ -90,6 +90,8 @@ class Pipeline:
             gate.limit(proposal.torque_nm, request, permission)
             for gate, proposal, request in zip(self._gates, proposals, request_nm, strict=True)
         )
+        allowed_nm = (min(left, request_nm[0]), min(right, request_nm[1]))
+        self._estimator.sent(allowed_nm, request_nm)
         return TorqueLimits(left, right)
 
     def _command(
@@ -111,4 +113,5 @@ class Pipeline:
             controller=self._law.kind,
             slip_ratio=(estimate.wheels[0].slip_ratio, estimate.wheels[1].slip_ratio),
             slip_reference=self._law.slip_reference,
+            road=estimate.road,
         )

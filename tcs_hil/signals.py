@@ -66,6 +66,24 @@ class TorqueLimits(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class RoadEstimate:
+    """What the service believes about road and loop, for display and logging.
+
+    ``friction_ratio`` is mu under each front wheel, worth as much as its
+    ``confidence_ratio`` in [0, 1] says; ``loop_delay_s`` is from a measurement
+    to the first effect of the command that answers it.
+    """
+
+    friction_ratio: Pair
+    confidence_ratio: Pair
+    loop_delay_s: float
+
+
+UNKNOWN_ROAD = RoadEstimate((0.0, 0.0), (0.0, 0.0), 0.0)
+"""Nothing was estimated; the confidence says so."""
+
+
+@dataclass(frozen=True, slots=True)
 class Command:
     """Everything one tick tells the vehicle."""
 
@@ -76,3 +94,4 @@ class Command:
     controller: ControllerKind
     slip_ratio: Pair
     slip_reference: float
+    road: RoadEstimate = UNKNOWN_ROAD

@@ -66,6 +66,12 @@ CONTRACT: tuple[MessageContract, ...] = (
         ("SlipL", "SlipR", "SlipReference", "TcsController", "TcsFaultCode", "TickOverruns"),
         protected=False,
     ),
+    MessageContract(
+        "TcsEstimates",
+        TCS,
+        ("MuEstimateL", "MuEstimateR", "MuConfidenceL", "MuConfidenceR", "DelayEstimate"),
+        protected=False,
+    ),
     MessageContract("BenchTick", VEHICLE, ("BenchTickNumber",), cyclic=False, protected=False),
     MessageContract("BenchTickDone", TCS, ("BenchTickAnswered",), cyclic=False, protected=False),
 )

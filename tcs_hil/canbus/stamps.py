@@ -1,64 +1,39 @@
 """Receive stamps of every kind of bus on one time base: CLOCK_MONOTONIC in ns.
 
-What ``can.Message.timestamp`` means depends on the interface.  SocketCAN stamps
-with CLOCK_REALTIME, which may step; the embedded bus with CLOCK_MONOTONIC; of
-any other interface nothing is assumed and the moment of reading is taken.
+What a stamp means depends on the interface.  SocketCAN stamps with
+CLOCK_REALTIME, which may step; the embedded bus with CLOCK_MONOTONIC; of any
+other interface nothing is assumed and the moment of reading is taken.
 """
 
 from __future__ import annotations
 
 import time
-from typing import Protocol
+from collections.abc import Callable
 
 import can
-from can.interfaces.socketcan import SocketcanBus
 
 from tcs_hil.canbus.embedded import EmbeddedBus
 
 
-class Stamps(Protocol):
-    """Time base of one bus; ``stamp_ns`` may be asked between ``begin`` and ``end``."""
-
-    def begin(self) -> None:
-        """A drain of the bus starts."""
-
-    def stamp_ns(self, message: can.Message) -> int:
-        """When the message came, on CLOCK_MONOTONIC."""
-        ...
-
-    def end(self) -> None:
-        """The drain has left the bus empty."""
+def stamping_of(bus: can.BusABC) -> Callable[[can.Message], int]:
+    """What turns a message of ``bus``, read this moment, into its stamp in ns."""
+    return _monotonic_ns if isinstance(bus, EmbeddedBus) else _read_time_ns
 
 
-class MonotonicStamps:
-    """Messages that carry CLOCK_MONOTONIC already."""
-
-    def begin(self) -> None:
-        """Nothing to measure."""
-
-    def stamp_ns(self, message: can.Message) -> int:
-        """Take the stamp as it is."""
-        return round(message.timestamp * 1e9)
-
-    def end(self) -> None:
-        """Nothing to remember."""
+def _monotonic_ns(message: can.Message) -> int:
+    return round(message.timestamp * 1e9)
 
 
-class ReadTimeStamps(MonotonicStamps):
-    """Messages whose stamps mean nothing known: the moment of reading counts."""
-
-    def stamp_ns(self, message: can.Message) -> int:  # noqa: ARG002
-        """Take the time of this very call."""
-        return time.monotonic_ns()
+def _read_time_ns(_message: can.Message) -> int:
+    return time.monotonic_ns()
 
 
 class RealtimeStamps:
-    """Messages stamped with CLOCK_REALTIME, moved over by the offset of each drain.
+    """Stamps of CLOCK_REALTIME, moved over by the offset that each drain of the bus measures.
 
     A frame cannot have come before the previous drain, which left the bus empty,
     nor after now.  Holding the stamps to that keeps them right to within one
-    tick when somebody steps the wall clock between arrival and drain.  python-can
-    hands the stamp over as a float, which resolves about 0.25 µs.
+    tick when somebody steps the wall clock between arrival and drain.
     """
 
     def __init__(self) -> None:
@@ -67,22 +42,15 @@ class RealtimeStamps:
         self._begin_ns = 0
 
     def begin(self) -> None:
-        """Measure the offset between the clocks."""
+        """A drain starts: measure the offset between the clocks."""
         self._begin_ns = time.monotonic_ns()
         self._offset_ns = self._begin_ns - time.time_ns()
 
-    def stamp_ns(self, message: can.Message) -> int:
-        """Move the stamp over and hold it to what is possible."""
-        moved_ns = round(message.timestamp * 1e9) + self._offset_ns
+    def moved_ns(self, realtime_ns: int) -> int:
+        """Move a stamp over to CLOCK_MONOTONIC and hold it to what is possible."""
+        moved_ns = realtime_ns + self._offset_ns
         return min(max(moved_ns, self._earliest_ns), time.monotonic_ns())
 
     def end(self) -> None:
-        """Remember since when the bus has been empty."""
+        """The drain has left the bus empty: remember since when."""
         self._earliest_ns = self._begin_ns
-
-
-def stamps_for(bus: can.BusABC) -> Stamps:
-    """Time base of a bus, by its kind."""
-    if isinstance(bus, SocketcanBus):
-        return RealtimeStamps()
-    return MonotonicStamps() if isinstance(bus, EmbeddedBus) else ReadTimeStamps()

@@ -9,7 +9,9 @@ from tcs_hil.canbus.contract import TCS
 from tcs_hil.canbus.database import Database
 from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox
 from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
-from tcs_hil.signals import Command, Measurement
+from tcs_hil.signals import Command, Measurement, RoadEstimate
+
+MS_PER_S = 1e3
 
 
 class TcsNode:
@@ -32,6 +34,7 @@ class TcsNode:
         )
         self._limit = Outbox(messages["TorqueLimit"])
         self._status = Outbox(messages["TcsStatus"])
+        self._estimates = Outbox(messages["TcsEstimates"])
         self._bench_done = Outbox(messages["BenchTickDone"])
         self._ceilings = ceiling_codes(messages["TorqueLimit"])
 
@@ -76,13 +79,16 @@ class TcsNode:
         )
 
     def frames(self, command: Command, now_ns: int, tick_overruns: int = 0) -> list[OutgoingFrame]:
-        """Frames of this tick: the status when its cycle is due, the torque limits last.
+        """Frames of this tick: status or estimates when their cycle is due, the limits last.
 
-        The limits go out with every call, so the call is the cycle.
+        The limits go out with every call, so the call is the cycle.  Status and
+        estimates never share a tick with each other.
         """
         frames = []
         if self._status.is_due(now_ns):
             frames.append(self._status_frame(command, tick_overruns))
+        elif self._estimates.is_due(now_ns):
+            frames.append(self._estimates_frame(command.road))
         frames.append(self._limit_frame(command))
         return frames
 
@@ -106,4 +112,9 @@ class TcsNode:
             command.controller,
             command.fault_code,
             tick_overruns,
+        )
+
+    def _estimates_frame(self, road: RoadEstimate) -> OutgoingFrame:
+        return self._estimates.frame(
+            *road.friction_ratio, *road.confidence_ratio, road.loop_delay_s * MS_PER_S
         )

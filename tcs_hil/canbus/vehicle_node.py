@@ -11,7 +11,7 @@ from tcs_hil.canbus.contract import VEHICLE
 from tcs_hil.canbus.database import Database
 from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox
 from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
-from tcs_hil.signals import ControllerKind, FourWheels, Pair, TcsState, TorqueLimits
+from tcs_hil.signals import ControllerKind, FourWheels, Pair, RoadEstimate, TcsState, TorqueLimits
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,9 +91,10 @@ class VehicleNode:
         unlimited = tuple(code.no_limit_nm for code in self._ceilings)
         self._torque = Mailbox(messages["TorqueLimit"], (*unlimited, 0, 0, TcsState.OFF))
         self._status = Mailbox(messages["TcsStatus"], (0.0, 0.0, 0.0, ControllerKind.OFF, 0, 0))
+        self._estimates = Mailbox(messages["TcsEstimates"], (0.0, 0.0, 0.0, 0.0, 0.0))
         self._bench_done = Mailbox(messages["BenchTickDone"], (0,))
         self._inbox = Inbox(
-            [self._torque, self._status, self._bench_done],
+            [self._torque, self._status, self._estimates, self._bench_done],
             own_ids=database.frame_ids_of(VEHICLE),
         )
         self._bench = Outbox(messages["BenchTick"])
@@ -134,6 +135,12 @@ class VehicleNode:
             fault_code=int(fault_code),
             tick_overruns=int(overruns),
         )
+
+    @property
+    def road(self) -> RoadEstimate:
+        """What the service last said it believes about road and loop; zeros before it speaks."""
+        mu_left, mu_right, sure_left, sure_right, delay_ms = self._estimates.values
+        return RoadEstimate((mu_left, mu_right), (sure_left, sure_right), delay_ms * 1e-3)
 
     @property
     def bench_tick_done(self) -> int | None:

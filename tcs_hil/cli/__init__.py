@@ -15,7 +15,9 @@ COMMANDS = {
     "demo": "Run the paper's experiment between two processes and show it.",
     "record": "Record a bus into a BLF, ASC or candump log file.",
     "signals": "Print the contract of the bus as a Markdown table.",
+    "doctor": "Examine whether this machine keeps a 2 ms tick.",
     "report": "Show latency, jitter and states of a flight recording.",
+    "metrics": "Serve Prometheus metrics of a running service.",
 }
 
 

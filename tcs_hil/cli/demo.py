@@ -28,7 +28,7 @@ from tcs_hil.hil.table import (
     row,
 )
 
-WIDE = 200
+WIDE = 245
 """Characters the whole table takes."""
 
 

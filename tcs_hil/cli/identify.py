@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
-import msgspec
-from rich.console import Console
-from rich.table import Table
+from msgspec.structs import replace
 
+from tcs_hil.cli.identified import show_bank, show_predictor, show_refined
 from tcs_hil.cli.options import json_option
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import read_toml
+from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
+from tcs_hil.hil.drives import read_drive
+from tcs_hil.model.bank import KoopmanBank, default_bank_path
+from tcs_hil.model.bank_evaluation import simulated_errors
+from tcs_hil.model.bank_identification import BANK_SEED, identify_bank
+from tcs_hil.model.bank_provenance import BankSettings
 from tcs_hil.model.edmd import DEFAULT_SEED, IdentificationSettings, identify
-from tcs_hil.model.evaluation import PredictionErrors, figure1, prediction_errors
-from tcs_hil.model.predictor import KoopmanPredictor
+from tcs_hil.model.evaluation import figure1, prediction_errors
+from tcs_hil.model.lifting import DICTIONARIES
+from tcs_hil.model.recorded_identification import refine
+
+PAPER_ONLY = ("figure", "dictionary", "order")
 
 
 @click.command()
+@click.option(
+    "--preset",
+    type=click.Choice(["paper", "default"]),
+    default="paper",
+    show_default=True,
+    help="paper: one predictor of the quarter car; default: a bank over 0 to 200 km/h.",
+)
 @click.option(
     "--output",
     type=click.Path(dir_okay=False, path_type=Path),
@@ -30,62 +46,90 @@ from tcs_hil.model.predictor import KoopmanPredictor
     "--settings",
     "settings_path",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="TOML file with vehicle, data set, dictionary and order; the paper's without it.",
+    help="TOML file with what to identify from what; the preset's own without it.",
 )
 @click.option("--seed", type=click.IntRange(min=0), help="Seed of the data set.")
+@click.option("--dictionary", type=click.Choice(DICTIONARIES), help="Observables (preset paper).")
+@click.option("--order", type=int, help="Order of the dictionary (preset paper).")
 @click.option(
     "--figure",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="Also draw the paper's figure 1 into this PNG.",
+    help="Also draw the paper's figure 1 into this PNG (preset paper).",
+)
+@click.option(
+    "--from",
+    "recordings",
+    type=click.Path(dir_okay=False, path_type=Path),
+    multiple=True,
+    help="Refine the shipped bank on a recorded drive, .blf or .csv; may be repeated "
+    "(preset default).",
 )
 @json_option
-def command(
-    output: Path, settings_path: Path | None, seed: int | None, figure: Path | None, as_json: bool
-) -> None:
+def command(preset: str, output: Path, as_json: bool, **options: Any) -> None:
     """Identify a Koopman predictor: data set, lifting, least squares, model file.
 
-    Example: tcs-hil identify --output model.npz --figure prediction.png
+    Errors are judged on data the regression has not seen.
+
+    Example: tcs-hil identify --preset default --from drive.blf --output model.npz
     """
     if not output.absolute().parent.is_dir():
         raise ConfigError(f"{output}: there is no such folder to write the model file into")
-    settings = (
-        read_toml(settings_path, IdentificationSettings)
-        if settings_path
-        else IdentificationSettings()
-    )
+    identification = {"paper": _paper, "default": _default}[preset]
+    if preset == "default" and options["recordings"]:
+        identification = _recorded
+    identification(output, as_json, **options)
+
+
+def _paper(output: Path, as_json: bool, **options: Any) -> None:
+    _refuse("preset paper", {"--from": options["recordings"]})
+    settings = _paper_settings(options)
+    seed = DEFAULT_SEED if options["seed"] is None else options["seed"]
     with progress_bar("simulating the data set") as advance:
-        predictor = identify(settings, DEFAULT_SEED if seed is None else seed, advance)
+        predictor = identify(settings, seed, advance)
     predictor.save(output)
-    if figure:
+    if options["figure"]:
         from tcs_hil.hil.figures import save_prediction_figure  # noqa: PLC0415 - slow to load
 
-        save_prediction_figure(figure, figure1(predictor))
-    show(predictor, prediction_errors(predictor), output, as_json)
+        save_prediction_figure(options["figure"], figure1(predictor))
+    show_predictor(predictor, prediction_errors(predictor), output, as_json)
 
 
-def show(
-    predictor: KoopmanPredictor, errors: PredictionErrors, output: Path, as_json: bool
-) -> None:
-    """Print the figures that tell a good predictor from a bad one."""
-    if as_json:
-        provenance = msgspec.to_builtins(predictor.provenance)
-        click.echo(
-            msgspec.json.encode({"errors": errors, "provenance": provenance, "file": str(output)})
-        )
-        return
-    table = Table(
-        title=f"{output}: {predictor.provenance.dictionary}, {len(predictor.a)} observables"
-    )
-    table.add_column("figure")
-    table.add_column("value", justify="right")
-    for name, value in (
-        ("samples", f"{predictor.provenance.fit.samples}"),
-        (f"RMSE of s over {errors.steps} steps", f"{errors.s_mps:.4f} m/s"),
-        (f"RMSE of omega over {errors.steps} steps", f"{errors.omega_radps:.3f} rad/s"),
-        (f"RMSE of kappa over {errors.steps} steps", f"{errors.slip_ratio:.4f}"),
-        ("spectral radius of A", f"{errors.spectral_radius:.5f}"),
-        ("condition number of the regressor", f"{errors.condition_number:.3g}"),
-    ):
-        table.add_row(name, value)
-    Console().print(table)
-    click.echo(f"errors are medians over {errors.draws} random torque sequences it has not seen")
+def _paper_settings(options: dict[str, Any]) -> IdentificationSettings:
+    path = options["settings_path"]
+    settings = read_toml(path, IdentificationSettings) if path else IdentificationSettings()
+    said = {key: options[key] for key in ("dictionary", "order") if options[key] is not None}
+    return replace(settings, **said)
+
+
+def _default(output: Path, as_json: bool, **options: Any) -> None:
+    _refuse("preset default", {f"--{key}": options[key] for key in PAPER_ONLY})
+    path = options["settings_path"]
+    settings = read_toml(path, BankSettings) if path else BankSettings()
+    seed = BANK_SEED if options["seed"] is None else options["seed"]
+    with progress_bar("simulating and fitting the bands") as advance:
+        bank = identify_bank(settings, seed, advance)
+    bank.save(output)
+    show_bank(bank, simulated_errors(bank), output, as_json)
+
+
+def _recorded(output: Path, as_json: bool, **options: Any) -> None:
+    refused = {f"--{key}": options[key] for key in (*PAPER_ONLY, "seed")}
+    _refuse("--from", refused | {"--settings": options["settings_path"]})
+    control = ControlSettings()
+    bank = KoopmanBank.load(default_bank_path(), control.period_s)
+    vehicle = bank.provenance.settings.vehicle
+    recordings, drives = options["recordings"], []
+    with progress_bar("reading") as advance:
+        for done, path in enumerate(recordings):
+            advance(done / len(recordings), f"reading {path}")
+            drives.append(read_drive(path, control, vehicle))
+    refined = refine(bank, drives)
+    refined.bank.save(output)
+    show_refined(refined, output, as_json)
+
+
+def _refuse(whom: str, options: dict[str, object]) -> None:
+    """Say so instead of ignoring an option."""
+    for name, value in options.items():
+        if value not in (None, ()):
+            raise ConfigError(f"{name} means nothing to {whom}")

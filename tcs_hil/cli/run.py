@@ -25,18 +25,26 @@ from tcs_hil.service.settings import ServiceConfig
 )
 @click.option("--controller", type=click.Choice(["off", "pi", "kmpc", "nmpc"]))
 @click.option(
+    "--preset",
+    type=click.Choice(["paper", "default"]),
+    help="paper: the laws as published; default: the laws for a real bus and driveline.",
+)
+@click.option(
     "--model", type=click.Path(dir_okay=False), help="Koopman predictor made by `tcs-hil identify`."
 )
 @bus_options
 @click.option(
     "--trigger",
-    type=click.Choice(["timer", "lockstep"]),
-    help="timer: the 2 ms grid; lockstep: a bench paces the ticks.",
+    type=click.Choice(["timer", "frame", "lockstep"]),
+    help="timer: the 2 ms grid; frame: the rear wheel speeds; lockstep: a bench paces the ticks.",
 )
 @click.option("--phase-us", type=int, help="Shift of the 2 ms grid.")
+@click.option("--spin-us", type=int, help="Wait awake this long before each point of the grid.")
+@click.option("--priority", type=int, help="Of SCHED_FIFO, 1 to 99.")
+@click.option("--cpu", type=int, help="Core to stay on.")
 @click.option(
     "--flight-recording",
-    "recording",
+    "path",
     type=click.Path(dir_okay=False),
     help="Write every tick into this file.",
 )
@@ -58,17 +66,16 @@ def _say(line: str) -> None:
 def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConfig:
     """The configuration with what was said on the command line put on top."""
 
-    def said(**keys: str) -> dict[str, Any]:
-        return {key: options[name] for key, name in keys.items() if options[name] is not None}
+    def said(*names: str) -> dict[str, Any]:
+        return {name: options[name] for name in names if options[name] is not None}
 
     merged = replace(
         config,
-        **said(controller="controller", model="model"),
-        bus=replace(
-            config.bus, **said(interface="interface", channel="channel", bitrate="bitrate")
-        ),
-        tick=replace(config.tick, **said(trigger="trigger", phase_us="phase_us")),
-        recorder=replace(config.recorder, **said(path="recording")),
+        **said("controller", "model"),
+        control=replace(config.control, **said("preset")),
+        bus=replace(config.bus, **said("interface", "channel", "bitrate")),
+        tick=replace(config.tick, **said("trigger", "phase_us", "spin_us", "priority", "cpu")),
+        recorder=replace(config.recorder, **said("path")),
     )
     # Put together from parts that were never checked together: bounds are looked at again.
     return convert(to_builtins(merged), ServiceConfig, "command line")

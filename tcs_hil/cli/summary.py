@@ -26,7 +26,12 @@ def show_summary(summary: Summary, as_json: bool) -> None:
     """Print a summary as a table, or as JSON for a program to read."""
     if as_json:
         click.echo(json.dumps(summary.as_dict()))
-        return
+    else:
+        print_summary(summary)
+
+
+def print_summary(summary: Summary) -> None:
+    """Print a summary as a table."""
     table = Table(title=f"{summary.ticks} ticks, times in µs")
     table.add_column("")
     for heading in ("mean", "p50", "p99", "p99.9", "p99.99", "max"):
@@ -36,7 +41,8 @@ def show_summary(summary: Summary, as_json: bool) -> None:
     Console().print(table)
     click.echo(
         f"overruns {summary.overruns}, skipped ticks {summary.skipped}, "
-        f"failed ticks {summary.failures}, bus errors {summary.bus_errors}"
+        f"failed ticks {summary.failures}, bus errors {summary.bus_errors}, "
+        f"lost frames {summary.lost_frames}, E2E errors {summary.e2e_errors}"
     )
     click.echo(f"states: {_counts(summary.states)}; solver: {_counts(summary.statuses)}")
 

@@ -7,6 +7,7 @@ from tcs_hil.control.pi import PiController
 from tcs_hil.control.protocol import Controller
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
+from tcs_hil.model.bank import KoopmanBank
 from tcs_hil.model.predictor import KoopmanPredictor
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.signals import ControllerKind
@@ -16,9 +17,11 @@ def make_controller(
     kind: ControllerKind,
     settings: ControlSettings,
     vehicle: Vehicle,
-    predictor: KoopmanPredictor | None = None,
+    predictor: KoopmanPredictor | KoopmanBank | None = None,
 ) -> Controller:
     """One wheel's controller; only the Koopman MPC needs the predictor.
+
+    The preset ``paper`` takes a single one, ``default`` a bank.
 
     Solvers are imported where they are used: a service that runs the PI loads
     neither OSQP nor CasADi.  Raises ConfigError for a predictor that is missing
@@ -29,15 +32,31 @@ def make_controller(
     if kind is ControllerKind.PI:
         return PiController(settings)
     if kind is ControllerKind.NMPC:
-        from tcs_hil.control.nmpc import nonlinear_mpc  # noqa: PLC0415
-
-        return nonlinear_mpc(settings, vehicle)
+        return _nonlinear(settings, vehicle)
     return _koopman(settings, predictor)
 
 
-def _koopman(settings: ControlSettings, predictor: KoopmanPredictor | None) -> Controller:
-    from tcs_hil.control.kmpc import koopman_mpc  # noqa: PLC0415
+def _nonlinear(settings: ControlSettings, vehicle: Vehicle) -> Controller:
+    if settings.preset == "default":
+        from tcs_hil.control.driveline_nmpc import driveline_mpc  # noqa: PLC0415
 
+        return driveline_mpc(settings, vehicle)
+    from tcs_hil.control.nmpc import nonlinear_mpc  # noqa: PLC0415
+
+    return nonlinear_mpc(settings, vehicle)
+
+
+def _koopman(
+    settings: ControlSettings, predictor: KoopmanPredictor | KoopmanBank | None
+) -> Controller:
     if predictor is None:
         raise ConfigError("controller KMPC needs a model file")
-    return koopman_mpc(settings, predictor)
+    if settings.preset == "default" and isinstance(predictor, KoopmanBank):
+        from tcs_hil.control.bank_law import bank_mpc  # noqa: PLC0415
+
+        return bank_mpc(settings, predictor)
+    if settings.preset == "paper" and isinstance(predictor, KoopmanPredictor):
+        from tcs_hil.control.kmpc import koopman_mpc  # noqa: PLC0415
+
+        return koopman_mpc(settings, predictor)
+    raise ConfigError(f"the model file is not of the kind that preset {settings.preset} needs")

@@ -1,4 +1,4 @@
-"""The integral of the slip error, Eq. (e_int), with the authors' anti-windup."""
+"""The integral of the slip error, Eq. (e_int), with the anti-windup of each preset."""
 
 from __future__ import annotations
 
@@ -27,6 +27,34 @@ class SlipErrorIntegral:
         """Euler step over the period in which ``torque_nm`` answers ``torque_ref_nm``."""
         if torque_ref_nm > 0.0 and abs(torque_ref_nm - torque_nm) > REDUCTION_THRESHOLD_NM:
             self.value_s += self._period_s * (self._slip_reference - slip_ratio)
+
+    def reset(self) -> None:
+        """Back to zero."""
+        self.value_s = 0.0
+
+
+class BoundedIntegral:
+    """e_int of the default laws: bounded, and frozen where it could only wind up.
+
+    At a bound of the torque an error that pushes further outwards says nothing
+    about the law; one that leads back inside counts.
+    """
+
+    def __init__(self, slip_reference: float, period_s: float, limit_s: float) -> None:
+        self._slip_reference = slip_reference
+        self._period_s = period_s
+        self._limit_s = limit_s
+        self.value_s = 0.0
+
+    def advance(self, slip_ratio: float, torque_nm: float, torque_ref_nm: float) -> None:
+        """Euler step over the period in which ``torque_nm`` answers ``torque_ref_nm``."""
+        error = self._slip_reference - slip_ratio
+        at_top = torque_nm >= torque_ref_nm - REDUCTION_THRESHOLD_NM
+        at_bottom = torque_nm <= REDUCTION_THRESHOLD_NM
+        if (error > 0.0 and at_top) or (error < 0.0 and at_bottom):
+            return
+        value_s = self.value_s + self._period_s * error
+        self.value_s = min(max(value_s, -self._limit_s), self._limit_s)
 
     def reset(self) -> None:
         """Back to zero."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from tcs_hil.control.integrator import SlipErrorIntegral
+from tcs_hil.control.least_squares import Linearisation
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.predictive import PredictiveController
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.control.sqp import minimise
-from tcs_hil.control.transcription import Linearisation
+from tcs_hil.control.transcription import gauss_newton_function
 from tcs_hil.model.vehicle import Vehicle
 
 
@@ -23,7 +24,7 @@ class NonlinearOptimiser:
     """
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
-        self._problem = Linearisation(settings, vehicle)
+        self._problem = Linearisation(gauss_newton_function(settings, vehicle))
         self._max_iterations = settings.nmpc.max_iterations
         self._guess = np.zeros(settings.nmpc.horizon)  # (N,), Nm
 

@@ -17,9 +17,9 @@ class PiController:
     """
 
     def __init__(self, settings: ControlSettings) -> None:
-        self._tuning = settings.pi
+        self._tuning = settings.pi if settings.preset == "paper" else settings.default.pi
         self._slip_reference = settings.slip_reference
-        self._integral_share = settings.period_s / settings.pi.integral_time_s
+        self._integral_share = settings.period_s / self._tuning.integral_time_s
         self._integral_nm = 0.0
         self._awake = False
 

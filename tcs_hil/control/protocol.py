@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Protocol
@@ -13,6 +14,11 @@ class WheelState:
 
     ``slip_speed_mps`` is s = omega R - v, ``slip_ratio`` the modified kappa of
     Eq. (slip_mod).  Motor quantities are on the motor side of the gear.
+
+    NaN is what nobody knows: ``motor_torque_nm`` without a motor on the bus;
+    ``shaft_twist_rad`` and ``tyre_force_n`` (driving positive) without an observer.
+    ``loop_delay_s`` is from the instant all this describes to the first effect
+    of the command that answers it.
     """
 
     slip_speed_mps: float
@@ -21,6 +27,9 @@ class WheelState:
     vehicle_speed_mps: float
     motor_speed_radps: float
     motor_torque_nm: float
+    shaft_twist_rad: float = math.nan
+    tyre_force_n: float = math.nan
+    loop_delay_s: float = 0.0
 
     @classmethod
     def at_rest(cls) -> WheelState:

@@ -38,19 +38,24 @@ class OsqpBox:
     its data) would drown the tolerance in rounding.
     """
 
-    def __init__(self, hessian: FloatArray, max_iterations: int = MAX_ITERATIONS) -> None:
+    def __init__(
+        self,
+        hessian: FloatArray,
+        max_iterations: int = MAX_ITERATIONS,
+        tolerance: float = TOLERANCE,
+    ) -> None:
         eigenvalues = np.linalg.eigvalsh(hessian)
         self._scale = 1.0 / float(eigenvalues[-1])
         self._lower = np.zeros(len(hessian))
         self._upper = np.zeros(len(hessian))
         penalty = math.sqrt(float(eigenvalues[0]) * self._scale)
         self._decided = 2.0 * math.sqrt(len(hessian))  # per unit of radius, with a margin of 2
-        self._solver = _compiled_solver(hessian * self._scale, penalty, max_iterations)
+        self._solver = _compiled_solver(hessian * self._scale, penalty, max_iterations, tolerance)
 
     def solve(self, gradient: FloatArray, lower: float, upper: float) -> Plan:
         """Solve for g (n,), warm from the last solution, which moves little between ticks.
 
-        The result lies in the box up to ``TOLERANCE``.  Nothing is raised: a
+        The result lies in the box up to the tolerance.  Nothing is raised: a
         problem that is not finite, or a solver in trouble, is ``FAILED``.
         """
         scaled = gradient * self._scale
@@ -76,7 +81,9 @@ class OsqpBox:
         self._solver.warm_start(x=cold, y=cold)
 
 
-def _compiled_solver(scaled_hessian: FloatArray, penalty: float, max_iterations: int) -> Any:
+def _compiled_solver(
+    scaled_hessian: FloatArray, penalty: float, max_iterations: int, tolerance: float
+) -> Any:
     """The compiled solver behind ``osqp.OSQP``, set up with an open box.
 
     It takes the same calls as the public class without that class's copy of
@@ -93,7 +100,7 @@ def _compiled_solver(scaled_hessian: FloatArray, penalty: float, max_iterations:
         rho=penalty,
         adaptive_rho=False,
         scaling=0,
-        eps_abs=TOLERANCE,
+        eps_abs=tolerance,
         eps_rel=0.0,
         max_iter=max_iterations,
         check_termination=CHECK_EVERY,

@@ -1,13 +1,17 @@
-"""Settings of the control laws; the defaults are the paper's (Table II), the preset ``paper``."""
+"""Settings of the control laws: as published (``paper``, Table II), and to be run (``default``)."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 
+from tcs_hil.control.driveline import Driveline
+
 Weight = Annotated[float, msgspec.Meta(ge=0.0)]
 PositiveWeight = Annotated[float, msgspec.Meta(gt=0.0)]
+PresetName = Literal["paper", "default"]
+BlockPeriods = Annotated[int, msgspec.Meta(ge=1, le=2)]  # at most 4 ms: one Runge-Kutta step
 Horizon = Annotated[int, msgspec.Meta(ge=1, le=40)]
 
 
@@ -46,11 +50,76 @@ class NmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 20
 
 
-class ControlSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What all laws share, once, and the tuning of each."""
+class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Nonlinear MPC with the driveline in its model; weights in physical units.
 
+    ``blocks`` are the periods each torque of the plan is held for: fine where it
+    will be sent, coarse where it only has to be foreseen.
+    """
+
+    blocks: Annotated[tuple[BlockPeriods, ...], msgspec.Meta(min_length=2, max_length=40)] = (
+        *(1, 1, 1, 1, 2, 2),
+        *(2, 2, 2, 2),
+    )
+    weight_slip: Weight = 1e3
+    weight_integral: Weight = 2e4
+    weight_reduction: PositiveWeight = 1.6e-7
+    weight_change: PositiveWeight = 4e-2  # on (u_k - u_{k-1})²
+    max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 2
+    observer_time_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.02  # of the force disturbance
+    soft_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 2.5
+    """Below it slip answers torque so fast that its weights shrink with the speed squared."""
+
+
+class BankKmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Koopman MPC on a bank of predictors; weights in physical units."""
+
+    horizon: Horizon = 16
+    weight_slip: Weight = 1e3
+    weight_integral: Weight = 2e6
+    weight_reduction: PositiveWeight = 1e-5
+    weight_change: PositiveWeight = 5e-2  # on (u_k - u_{k-1})²
+    observer_time_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.03  # of the speed disturbance
+    online_update: bool = False  # of the predictor, by the grip observed
+    soft_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 4.0
+    """Below it slip answers torque so fast that its weights shrink with the speed squared."""
+
+
+class DelaySettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """From the instant of a measurement to the first effect of its command, on the bus's clock.
+
+    ``delay_s`` is believed as it is, or, if ``measured``, only until the service
+    has seen its limits come back in the motors' torque.
+    """
+
+    delay_s: Annotated[float, msgspec.Meta(ge=0.0, le=0.02)] = 0.006
+    measured: bool = True
+
+
+class DefaultSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What the preset ``default`` runs: every law, and what they share."""
+
+    driveline: Driveline = Driveline()
+    delay: DelaySettings = DelaySettings()
+    integral_limit_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.02
+    pi: PiSettings = PiSettings(
+        gain_base_nm=2.0, gain_slope_nm_per_mps=12.0, integral_time_s=0.015, entry_ratio=1.0
+    )
+    kmpc: BankKmpcSettings = BankKmpcSettings()
+    nmpc: DrivelineNmpcSettings = DrivelineNmpcSettings()
+
+
+class ControlSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What all laws share, once, and the tuning of each.
+
+    ``pi``, ``kmpc`` and ``nmpc`` belong to the preset ``paper``, ``default`` to
+    the other.
+    """
+
+    preset: PresetName = "default"
     period_s: Annotated[float, msgspec.Meta(gt=0.0, le=0.02)] = 0.002
     slip_reference: Annotated[float, msgspec.Meta(gt=0.0, le=0.5)] = 0.1
     pi: PiSettings = PiSettings()
     kmpc: KmpcSettings = KmpcSettings()
     nmpc: NmpcSettings = NmpcSettings()
+    default: DefaultSettings = DefaultSettings()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
 from tcs_hil.canbus.bus import choose_interface, open_bus
-from tcs_hil.hil.figures import save_prediction_figure, save_slip_figure
+from tcs_hil.control.settings import PresetName
+from tcs_hil.hil.figures import Line, save_prediction_figure, save_slip_figure
 from tcs_hil.hil.metrics import SlipMetrics, Truth, slip_metrics
 from tcs_hil.hil.paper import MANOEUVRES
 from tcs_hil.hil.run import Mode, RunPlan, execute
@@ -20,8 +21,9 @@ from tcs_hil.service.settings import ServiceConfig
 
 CONTROLLERS = ("off", "pi", "kmpc", "nmpc")
 MODES: tuple[Mode, ...] = ("lockstep", "realtime")
-VARIANT = "quarter-car"
-"""The paper's own car: what a bus and a driveline do to its laws is another experiment."""
+QUARTER_CAR, WHOLE_CAR = "quarter-car", "vehicle"
+PREDICTIVE = ("kmpc", "nmpc")
+PRESETS: tuple[PresetName, ...] = ("paper", "default")
 
 Progress = Callable[[float, str], None]
 
@@ -31,7 +33,9 @@ class Outcome:
     """One run and what came of it."""
 
     manoeuvre: str
+    car: str
     controller: str
+    preset: PresetName
     mode: Mode
     truth: Truth
     slip: SlipMetrics
@@ -64,15 +68,22 @@ def run_demo(folder: Path, interface: str, channel: str | None, progress: Progre
     plans = list(_plans(folder, interface, channel))
     outcomes = []
     for done, plan in enumerate(plans):
-        progress(done / len(plans), f"{plan.scenario} {plan.controller} in {plan.mode}")
+        progress(done / len(plans), f"{plan.scenario} {plan.vehicle} {plan.controller} {plan.mode}")
         outcomes.append(_outcome(plan))
     return Demo(description, tuple(outcomes), _draw(folder, outcomes))
 
 
 def _plans(folder: Path, interface: str, channel: str) -> Iterator[RunPlan]:
+    """The paper's experiment, and its laws on a car with driveline, sensors and delay."""
+
+    def plan(manoeuvre: str, car: str, controller: str, preset: PresetName, mode: Mode) -> RunPlan:
+        run_folder = folder / "runs" / f"{manoeuvre}-{car}-{controller}-{preset}-{mode}"
+        return RunPlan(manoeuvre, car, controller, mode, run_folder, interface, channel, preset)
+
     for mode, manoeuvre, controller in product(MODES, MANOEUVRES, CONTROLLERS):
-        run_folder = folder / "runs" / f"{manoeuvre}-{controller}-{mode}"
-        yield RunPlan(manoeuvre, VARIANT, controller, mode, run_folder, interface, channel)
+        yield plan(manoeuvre, QUARTER_CAR, controller, "paper", mode)
+    for controller, preset in product(PREDICTIVE, PRESETS):
+        yield plan("manoeuvre-1", WHOLE_CAR, controller, preset, "lockstep")
 
 
 def _outcome(plan: RunPlan) -> Outcome:
@@ -81,7 +92,9 @@ def _outcome(plan: RunPlan) -> Outcome:
     config = ServiceConfig()
     return Outcome(
         manoeuvre=plan.scenario,
+        car=plan.vehicle,
         controller=plan.controller,
+        preset=plan.preset,
         mode=plan.mode,
         truth=truth,
         slip=slip_metrics(truth, config.control.slip_reference, config.vehicle),
@@ -92,29 +105,28 @@ def _outcome(plan: RunPlan) -> Outcome:
 def _draw(folder: Path, outcomes: list[Outcome]) -> dict[str, Path]:
     reference = ServiceConfig().control.slip_reference
     predictor = KoopmanPredictor.load(default_model_path(), ServiceConfig().control.period_s)
+    in_lockstep = [outcome for outcome in outcomes if outcome.mode == "lockstep"]
     figures = {}
+
+    def draw(name: str, title: str, manoeuvre: str, car: str, controllers: Collection[str]) -> None:
+        """Lockstep runs only: the figures must not depend on the machine's mood."""
+        runs = [
+            Line(outcome.controller, outcome.preset, outcome.truth)
+            for outcome in in_lockstep
+            if (outcome.manoeuvre, outcome.car) == (manoeuvre, car)
+            and outcome.controller in controllers
+        ]
+        path = folder / f"{name}.png"
+        save_slip_figure(path, MANOEUVRES[manoeuvre], runs, reference)
+        figures[title] = path
+
     for manoeuvre, title in MANOEUVRES.items():
-        path = folder / f"{manoeuvre}.png"
-        save_slip_figure(path, title, _runs(outcomes, manoeuvre, ("kmpc", "nmpc")), reference)
-        figures[f"{title}: the paper's two controllers"] = path
-    path = folder / "comparison.png"
-    runs = _runs(outcomes, "manoeuvre-1", CONTROLLERS)
-    save_slip_figure(path, MANOEUVRES["manoeuvre-1"], runs, reference)
-    figures["With and without control"] = path
+        draw(manoeuvre, f"{title}: the laws as published", manoeuvre, QUARTER_CAR, PREDICTIVE)
+    draw("comparison", "With and without control", "manoeuvre-1", QUARTER_CAR, CONTROLLERS)
+    for name in PREDICTIVE:
+        title = f"{name.upper()} on a car with driveline, sensors and delay: published and default"
+        draw(f"driveline-{name}", title, "manoeuvre-1", WHOLE_CAR, (name,))
     path = folder / "prediction.png"
     save_prediction_figure(path, figure1(predictor))
     figures["The Koopman predictor's prediction"] = path
     return figures
-
-
-def _runs(
-    outcomes: list[Outcome], manoeuvre: str, controllers: tuple[str, ...]
-) -> dict[str, Truth]:
-    """Lockstep runs by controller: the figures must not depend on the machine's mood."""
-    return {
-        outcome.controller: outcome.truth
-        for outcome in outcomes
-        if outcome.manoeuvre == manoeuvre
-        and outcome.mode == "lockstep"
-        and outcome.controller in controllers
-    }

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -16,24 +17,41 @@ from tcs_hil.model.evaluation import Comparison
 mpl.use("Agg")
 
 COLOURS = {"off": "0.55", "pi": "tab:green", "kmpc": "tab:orange", "nmpc": "tab:blue"}
+PALE = 0.35
 REFERENCE = {"color": "black", "linestyle": "--", "linewidth": 1.0}
 
 
-def save_slip_figure(path: Path, title: str, runs: Mapping[str, Truth], reference: float) -> None:
-    """Slip and motor torque of the left front wheel, one line per controller of ``runs``.
+class Line(NamedTuple):
+    """One run in a figure."""
 
-    A dotted line in a controller's colour is where its front wheels meet
-    another friction.
+    controller: str
+    preset: str
+    truth: Truth
+
+
+def save_slip_figure(path: Path, title: str, runs: Sequence[Line], reference: float) -> None:
+    """Slip and motor torque of the left front wheel, one line per run.
+
+    A law as published is drawn paler where its default stands beside it.  A
+    dotted line is where a run's front wheels meet another friction.
     """
     figure = Figure(figsize=(8.0, 5.6), layout="constrained")
     slip, torque = figure.subplots(2, 1, sharex=True)
-    for controller, truth in runs.items():
-        line = {"color": COLOURS[controller], "linewidth": 1.3, "label": controller.upper()}
+    presets = {run.preset for run in runs}
+    for controller, preset, truth in runs:
+        line: dict[str, Any] = {
+            "color": COLOURS[controller],
+            "linewidth": 1.3,
+            "label": controller.upper(),
+        }
+        if len(presets) > 1:
+            line |= {"alpha": PALE if preset == "paper" else 1.0}
+            line |= {"label": f"{controller.upper()} {preset}"}
         slip.plot(truth["time_s"], truth["slip_ratio"][:, 0], **line)
         torque.plot(truth["time_s"], truth["motor_torque_nm"][:, 0], **line)
         _mark_friction_changes(slip, truth, COLOURS[controller])
     slip.axhline(reference, **REFERENCE)
-    longest = max(runs.values(), key=len)
+    longest = max((run.truth for run in runs), key=len)
     torque.plot(longest["time_s"], longest["request_nm"], **REFERENCE, label="driver's request")
     slip.set(title=title, ylabel="slip ratio", ylim=(-0.02, _slip_top(runs)))
     torque.set(xlabel="time in s", ylabel="motor torque in Nm")
@@ -66,8 +84,8 @@ def _mark_friction_changes(axes: Axes, truth: Truth, colour: str) -> None:
         axes.axvline(time_s, color=colour, linestyle=":", linewidth=0.9)
 
 
-def _slip_top(runs: Mapping[str, Truth]) -> float:
-    peak = max(float(truth["slip_ratio"][:, 0].max()) for truth in runs.values())
+def _slip_top(runs: Sequence[Line]) -> float:
+    peak = max(float(run.truth["slip_ratio"][:, 0].max()) for run in runs)
     return max(1.1 * peak, 0.15)
 
 

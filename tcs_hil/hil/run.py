@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tcs_hil.control.settings import PresetName
 from tcs_hil.hil.metrics import Truth
 from tcs_hil.hil.processes import program
 from tcs_hil.runtime.recording import read
@@ -33,6 +34,7 @@ class RunPlan:
     folder: Path
     interface: str = "auto"
     channel: str = "vcan0"
+    preset: PresetName = "default"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +90,8 @@ def _service(plan: RunPlan, files: RunFiles) -> tuple[str, ...]:
             str(files.config),
             "--controller",
             plan.controller,
+            "--preset",
+            plan.preset,
             "--trigger",
             trigger,
         ),

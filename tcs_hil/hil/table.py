@@ -10,6 +10,8 @@ from tcs_hil.hil.demo import Outcome
 from tcs_hil.hil.paper import SOLVE_TIMES
 from tcs_hil.runtime.summary import Percentiles
 
+_REPORTED = {("paper", *run): times for run, times in SOLVE_TIMES.items()}
+
 
 def _slip(value: float) -> str:
     return f"{value:.4f}"
@@ -21,7 +23,7 @@ def _law(outcome: Outcome) -> str:
 
 
 def _paper(outcome: Outcome) -> str:
-    reported = SOLVE_TIMES.get((outcome.manoeuvre, outcome.controller))
+    reported = _REPORTED.get((outcome.preset, outcome.manoeuvre, outcome.controller))
     return "-" if reported is None else f"{reported.mean_us:g} / {reported.max_us:g}"
 
 
@@ -43,7 +45,9 @@ Columns = dict[str, Callable[[Outcome], str]]
 
 RUN_COLUMNS: Columns = {
     "manoeuvre": lambda o: o.manoeuvre,
+    "car": lambda o: o.car,
     "controller": lambda o: o.controller.upper(),
+    "preset": lambda o: o.preset,
     "pace": lambda o: "real time" if o.mode == "realtime" else "lockstep",
 }
 SLIP_COLUMNS: Columns = {
@@ -79,7 +83,9 @@ def as_dict(outcome: Outcome) -> dict[str, Any]:
     """One run's figures as numbers, for JSON."""
     return {
         "manoeuvre": outcome.manoeuvre,
+        "car": outcome.car,
         "controller": outcome.controller,
+        "preset": outcome.preset,
         "pace": outcome.mode,
         "slip": asdict(outcome.slip),
         "timing": outcome.timing.as_dict(),

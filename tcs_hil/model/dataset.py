@@ -9,11 +9,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from tcs_hil.model.ranges import Range
 from tcs_hil.model.vehicle import Positive, Vehicle
 from tcs_hil.model.wheel import rk4_step, stable_substeps
 
 FloatArray = NDArray[np.float64]
-Range = tuple[float, float]
 Progress = Callable[[float], None]
 """Called with the fraction of the work that is done, in [0, 1]."""
 

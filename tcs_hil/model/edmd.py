@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from tcs_hil.errors import ModelError
 from tcs_hil.model.dataset import Dataset, DatasetSettings, Progress, generate
-from tcs_hil.model.lifting import SLIP_RATIO, Lifting, make_dictionary
+from tcs_hil.model.lifting import DICTIONARIES, SLIP_RATIO, Lifting, make_dictionary
 from tcs_hil.model.predictor import KoopmanPredictor
 from tcs_hil.model.provenance import FitQuality, Provenance, Validity
-from tcs_hil.model.scaling import fit_scaling
+from tcs_hil.model.radial import KERNELS, Centres, centre_count, draw_centres
+from tcs_hil.model.scaling import Scaling, fit_scaling
 from tcs_hil.model.vehicle import Vehicle
 
 FloatArray = NDArray[np.float64]
@@ -70,15 +71,20 @@ def identify(
 
     Raises ModelError for an unknown dictionary or data that determine nothing.
     """
-    dictionary = make_dictionary(settings.dictionary, settings.order)
+    if settings.dictionary not in DICTIONARIES:  # said before a data set is simulated
+        make_dictionary(settings.dictionary, settings.order)
     data = generate(settings.vehicle, settings.dataset, seed, progress)
-    lifting = Lifting(dictionary, fit_scaling(*data), settings.vehicle)
+    scaling = fit_scaling(*data)
+    centres = _centres(settings, data, scaling, seed)
+    dictionary = make_dictionary(settings.dictionary, settings.order, centres)
+    lifting = Lifting(dictionary, scaling, settings.vehicle)
     z, z_next = lifting.lift(*data.x.T), lifting.lift(*data.x_next.T)
     regression = fit(z, lifting.scaling.scale_torque(data.u), z_next)
     provenance = Provenance(
         period_s=settings.dataset.period_s,
         dictionary=settings.dictionary,
         order=settings.order,
+        centres=centres,
         scaling=lifting.scaling,
         validity=_validity(data, settings.vehicle, z[:, SLIP_RATIO]),
         fit=regression.quality,
@@ -87,6 +93,16 @@ def identify(
         seed=seed,
     )
     return KoopmanPredictor.build(regression.a, regression.b, provenance)
+
+
+def _centres(
+    settings: IdentificationSettings, data: Dataset, scaling: Scaling, seed: int
+) -> Centres:
+    if settings.dictionary not in KERNELS:
+        return ()
+    s, omega = data.x.T
+    states = np.column_stack((scaling.scale_s(s), scaling.scale_omega(omega)))
+    return draw_centres(states, centre_count(settings.order), seed)
 
 
 def _validity(data: Dataset, vehicle: Vehicle, kappa: FloatArray) -> Validity:

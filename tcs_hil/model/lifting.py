@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.errors import ModelError
+from tcs_hil.model.radial import KERNELS, Centres, RadialBasis, centre_count
 from tcs_hil.model.scaling import Scaling
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.model.wheel import slip_ratio
@@ -67,14 +67,22 @@ class Monomials:
         return values
 
 
-DICTIONARIES: dict[str, Callable[[int], Dictionary]] = {"monomials": Monomials}
+DICTIONARIES = ("monomials", *KERNELS)
 
 
-def make_dictionary(name: str, order: int) -> Dictionary:
-    """Dictionary chosen by name.  Raises ModelError for a name nobody knows."""
+def make_dictionary(name: str, order: int, centres: Centres = ()) -> Dictionary:
+    """Dictionary chosen by name; the radial ones stand on ``centres``.
+
+    Raises ModelError for a name nobody knows, an order out of bounds, or centres
+    that do not fit the order.
+    """
     if name not in DICTIONARIES:
         raise ModelError(f"dictionary '{name}' is unknown; known are {', '.join(DICTIONARIES)}")
-    return DICTIONARIES[name](order)
+    if name == "monomials":
+        return Monomials(order)
+    if not 2 <= order <= MAX_ORDER or len(centres) != centre_count(order):
+        raise ModelError(f"{len(centres)} centres do not fit dictionary '{name}' of order {order}")
+    return RadialBasis(KERNELS[name], centres)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from tcs_hil.errors import ModelError
 from tcs_hil.model import archive
 from tcs_hil.model.lifting import SLIP_RATIO, Lifting, make_dictionary
-from tcs_hil.model.provenance import Provenance, Validity, provenance_of
+from tcs_hil.model.provenance import Provenance, Validity, check_period, provenance_of
 from tcs_hil.model.scaling import Scaling
 
 FloatArray = NDArray[np.float64]
@@ -35,7 +34,7 @@ class KoopmanPredictor:
     @classmethod
     def build(cls, a: FloatArray, b: FloatArray, provenance: Provenance) -> KoopmanPredictor:
         """Check the shapes against the dictionary.  Raises ModelError."""
-        dictionary = make_dictionary(provenance.dictionary, provenance.order)
+        dictionary = make_dictionary(provenance.dictionary, provenance.order, provenance.centres)
         nz = dictionary.size
         if a.shape != (nz, nz) or b.shape != (nz, 1):
             raise ModelError(f"A {a.shape} and B {b.shape} do not fit {nz} observables")
@@ -104,11 +103,8 @@ class KoopmanPredictor:
     def load(cls, path: Path, period_s: float) -> KoopmanPredictor:
         """Read a model file made for this sampling time.  Raises ModelError naming the file."""
         metadata, arrays = archive.read(path)
-        provenance = provenance_of(path, metadata)
-        if not math.isclose(provenance.period_s, period_s):
-            raise ModelError(
-                f"model file '{path}' is for a period of {provenance.period_s} s, not {period_s} s"
-            )
+        provenance = provenance_of(path, metadata, Provenance, "predictor")
+        check_period(path, provenance.period_s, period_s)
         if arrays.keys() != {"a", "b"}:
             raise ModelError(f"model file '{path}' holds {sorted(arrays)} instead of a and b")
         try:

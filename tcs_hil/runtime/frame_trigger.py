@@ -14,7 +14,8 @@ class FrameTrigger:
     """Ticks when ``frame_id`` arrives, and without it half a period after it was due.
 
     Losing frames, or all of them, does not stop the ticks.  A frame that comes
-    within a quarter of a period after a tick is an input and no tick of its own.
+    within a quarter of a period after a tick is an input and no tick of its own;
+    the next one is expected a period after it.
     """
 
     def __init__(self, clock: Clock, port: Port, frame_id: int, period_ns: int) -> None:
@@ -22,13 +23,15 @@ class FrameTrigger:
         self._port = port
         self._frame_id = frame_id
         self._period_ns = period_ns
-        self._due_ns = clock.now_ns() + period_ns
+        self._due_ns = 0
         self._accept_from_ns = 0
         self._number = -1
         self._inputs: list[Frame] = []
 
     def wait(self) -> Tick:
         """Wait for the frame, a period and a half after the one before at most."""
+        if self._number < 0:  # time that passed between construction and start is nobody's tick
+            self._due_ns = self._clock.now_ns() + self._period_ns
         arrival_ns = self._arrival_ns()
         wake_ns = self._clock.now_ns()
         heard_ns = wake_ns - self._period_ns // 2 if arrival_ns is None else arrival_ns
@@ -50,9 +53,8 @@ class FrameTrigger:
 
     def _arrival_ns(self) -> int | None:
         """Stamp of the frame that starts the tick; None when it stays away."""
-        give_up_ns = self._due_ns + self._period_ns // 2
         while True:
-            left_ns = max(give_up_ns - self._clock.now_ns(), 0)
+            left_ns = max(self._due_ns + self._period_ns // 2 - self._clock.now_ns(), 0)
             if not self._port.wait(left_ns * 1e-9):
                 return None
             frames = self._port.receive()
@@ -60,5 +62,7 @@ class FrameTrigger:
             stamps = [frame.stamp_ns for frame in frames if frame.frame_id == self._frame_id]
             if stamps and stamps[-1] >= self._accept_from_ns:
                 return stamps[-1]
+            if stamps:  # not the start of a tick, but it says when the next one is due
+                self._due_ns = stamps[-1] + self._period_ns
             if not left_ns:
                 return None

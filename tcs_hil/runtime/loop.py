@@ -88,4 +88,7 @@ class Loop:
     def _insight(self, trace: Trace) -> Insight:
         left, right = self.laws
         solve_ns = (left.lap_ns(), right.lap_ns())
-        return Insight(trace, solve_ns, self.node.newest_wheel_stamp_ns, self.port.counters)
+        node = self.node
+        return Insight(
+            trace, solve_ns, node.newest_wheel_stamp_ns, self.port.counters, node.counters
+        )

@@ -26,13 +26,13 @@ class Grant(NamedTuple):
     why: str
 
 
-def prepare(cpu: int | None = None) -> list[Grant]:
-    """Ask for all a 2 ms tick can use; ``cpu`` is the core to stay on, if any.
+def prepare(cpu: int | None = None, priority: int = FIFO_PRIORITY) -> list[Grant]:
+    """Ask for all a 2 ms tick can use: SCHED_FIFO at ``priority``, and ``cpu`` to stay on, if any.
 
     Call it once everything is built: what exists by then is what the garbage
     collector will ignore and what memory is locked first.
     """
-    grants = [_quiet_collector(), _exact_timers(), _locked_memory(), _fifo()]
+    grants = [_quiet_collector(), _exact_timers(), _locked_memory(), _fifo(priority)]
     return grants if cpu is None else [*grants, _pinned(cpu)]
 
 
@@ -56,10 +56,10 @@ def _locked_memory() -> Grant:
     return Grant("memory locked", got, why)
 
 
-def _fifo() -> Grant:
-    what = f"SCHED_FIFO {FIFO_PRIORITY}"
+def _fifo(priority: int) -> Grant:
+    what = f"SCHED_FIFO {priority}"
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except OSError as error:
         return Grant(what, False, f"{error.strerror}: raise LimitRTPRIO / ulimit -r")
     return Grant(what, True, "runs before ordinary processes")

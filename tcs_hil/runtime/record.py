@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from typing import NamedTuple
 
+from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.port import PortCounters
 from tcs_hil.pipeline import Trace
 from tcs_hil.runtime.recording import FieldCode
@@ -27,9 +28,13 @@ FIELDS = {
     "solve_fr_ns": "q",
     "skipped": "q",  # grid points passed over since the tick before
     "frames": "q",  # received for this tick
-    "rx_frames": "q",  # the port's counters since the start
+    "rx_frames": "q",  # this counter and those below count since the start
     "tx_frames": "q",
     "bus_errors": "q",
+    "lost_frames": "q",  # the kernel had no room for them
+    "e2e_errors": "q",  # checksum or data id
+    "e2e_repeated": "q",
+    "e2e_wrong_sequence": "q",
     "iterations_fl": "q",
     "iterations_fr": "q",
     "front_speed_age_s": "d",  # ages at now_ns; inf before the first good frame
@@ -101,13 +106,14 @@ class Insight(NamedTuple):
     solve_ns: tuple[int, int]
     wheel_stamp_ns: int | None
     counters: PortCounters
+    inbox: InboxCounters
 
 
 def record(made: Pass, insight: Insight) -> Record:
     """Return the values in the order of ``FIELDS``; every one of them packs."""
     tick, m, command = made.tick, made.measurement, made.command
     left, right = insight.trace.proposals
-    counters = insight.counters
+    counters, inbox = insight.counters, insight.inbox
     return (
         tick.number,
         tick.scheduled_ns,
@@ -122,6 +128,10 @@ def record(made: Pass, insight: Insight) -> Record:
         counters.rx,
         counters.tx,
         counters.error_frames + counters.rx_errors + counters.tx_errors,
+        counters.lost,
+        inbox.e2e_error,
+        inbox.repeated,
+        inbox.wrong_sequence,
         left.iterations,
         right.iterations,
         m.front_speed_age_s,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import mmap
 import struct
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -49,11 +49,29 @@ class Header(msgspec.Struct, frozen=True):
     fields: Annotated[list[tuple[str, FieldCode]], msgspec.Meta(min_length=1)]
 
 
+class Bookmark(NamedTuple):
+    """How far a reader has come: the run, and how many of its ticks were made by then."""
+
+    run: RunInfo
+    made: int
+
+
 def read(path: Path) -> NDArray[np.void]:
     """Return the ticks of a recording as a structured array (n,), oldest first.
 
     The run may still be going on, or have been killed: ticks whose record may
     be half written are left out.
+
+    Raises:
+        RecordingError: the file cannot be opened, or is not a whole recording.
+    """
+    return read_on(path, None)[0]
+
+
+def read_on(path: Path, bookmark: Bookmark | None) -> tuple[NDArray[np.void], Bookmark]:
+    """Return the ticks since ``bookmark`` like ``read``, and the next bookmark.
+
+    Ticks the ring has dropped since are missing; another run is read from its start.
 
     Raises:
         RecordingError: the file cannot be opened, or is not a whole recording.
@@ -65,12 +83,13 @@ def read(path: Path) -> NDArray[np.void]:
             raise RecordingError(f"{path}: the recording is cut short")
         ring = np.frombuffer(view, dtype, capacity, start)
         end = _count(view)
-        first = max(end - capacity, 0)
+        seen = bookmark.made if bookmark is not None and bookmark.run == header.run else 0
+        first = max(end - capacity, seen)
         ticks = ring[np.arange(first, end) % capacity]
         # The writer may have moved on meanwhile, and be at work on one more record.
         overwritten = _count(view) + 1 - capacity - first
         del ring  # the map cannot be closed while an array looks into it
-        return ticks[max(overwritten, 0) :]
+        return ticks[max(overwritten, 0) :], Bookmark(header.run, end)
 
 
 def read_info(path: Path) -> RunInfo:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
+from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.port import Frame, PortCounters
 from tcs_hil.pipeline import Trace
 from tcs_hil.signals import Command, Measurement
@@ -50,6 +51,11 @@ class Bench(Protocol):
 
 class Node(Bench, Protocol):
     """The service's end of the DBC: frames to signals and back."""
+
+    @property
+    def counters(self) -> InboxCounters:
+        """What became of the frames fed so far."""
+        ...
 
     @property
     def newest_wheel_stamp_ns(self) -> int | None:

@@ -10,11 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.control.protocol import SolveStatus
-from tcs_hil.runtime.record import NO_LATENCY
+from tcs_hil.runtime.times import both_wheels, times_us, was_asked
 from tcs_hil.signals import TcsState
-
-US_PER_NS = 1e-3
-US_PER_S = 1e6
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +35,8 @@ class Percentiles:
 class Summary:
     """What one run did, tick by tick.
 
-    A distribution is None where no tick had a value.  ``wake_jitter`` is wake minus
-    scheduled time, ``latency`` receive time of the newest wheel-speed frame → send,
-    ``solve`` the time of one wheel's control law, ``input_age`` that of the rear
-    wheel speeds.  Statuses and solve times are of the wheels whose law was asked.
+    The distributions are those of ``times.times_us``, None where no tick had a
+    value.  Statuses and solve times are of the wheels whose law was asked.
     """
 
     ticks: int
@@ -49,6 +44,8 @@ class Summary:
     skipped: int
     failures: int
     bus_errors: int
+    lost_frames: int
+    e2e_errors: int
     wake_jitter: Percentiles | None
     receive: Percentiles | None
     step: Percentiles | None
@@ -67,28 +64,31 @@ class Summary:
 
 def summarise(ticks: NDArray[np.void]) -> Summary:
     """Summarise ticks as ``recording.read`` returns them: (n,), n may be 0."""
-    asked = ~np.isnan(_both(ticks, "proposal_{}_nm"))
-    # A tick that met no new speeds has no latency of its own: the bus was silent, not we late.
-    fresh = np.diff(ticks["wheel_stamp_ns"], prepend=0) != 0
-    latency_ns = ticks["latency_ns"][fresh]
-    age_s = ticks["rear_speed_age_s"]
+    asked = was_asked(ticks)
+    times = {name: _percentiles(samples_us) for name, samples_us in times_us(ticks).items()}
     return Summary(
         ticks=len(ticks),
         overruns=int(ticks["overrun"].sum()),
         skipped=int(ticks["skipped"].sum()),
         failures=int(ticks["failed"].sum()),
-        bus_errors=int(ticks["bus_errors"][-1]) if len(ticks) else 0,
-        wake_jitter=_percentiles((ticks["wake_ns"] - ticks["scheduled_ns"]) * US_PER_NS),
-        receive=_percentiles((ticks["received_ns"] - ticks["wake_ns"]) * US_PER_NS),
-        step=_percentiles((ticks["stepped_ns"] - ticks["received_ns"]) * US_PER_NS),
-        send=_percentiles((ticks["sent_ns"] - ticks["stepped_ns"]) * US_PER_NS),
-        total=_percentiles((ticks["sent_ns"] - ticks["wake_ns"]) * US_PER_NS),
-        latency=_percentiles(latency_ns[latency_ns != NO_LATENCY] * US_PER_NS),
-        solve=_percentiles(_both(ticks, "solve_{}_ns")[asked] * US_PER_NS),
-        input_age=_percentiles(age_s[np.isfinite(age_s)] * US_PER_S),
-        statuses=_counts(_both(ticks, "status_{}")[asked], SolveStatus),
+        bus_errors=_newest(ticks, "bus_errors"),
+        lost_frames=_newest(ticks, "lost_frames"),
+        e2e_errors=_newest(ticks, "e2e_errors"),
+        wake_jitter=times["wake_jitter"],
+        receive=times["receive"],
+        step=times["step"],
+        send=times["send"],
+        total=times["total"],
+        latency=times["latency"],
+        solve=times["solve"],
+        input_age=times["input_age"],
+        statuses=_counts(both_wheels(ticks, "status_{}")[asked], SolveStatus),
         states=_counts(ticks["state"], TcsState),
     )
+
+
+def _newest(ticks: NDArray[np.void], counter: str) -> int:
+    return int(ticks[counter][-1]) if len(ticks) else 0
 
 
 def _percentiles(samples_us: NDArray[np.float64]) -> Percentiles | None:
@@ -99,11 +99,6 @@ def _percentiles(samples_us: NDArray[np.float64]) -> Percentiles | None:
     ).tolist()
     mean = float(samples_us.mean())
     return Percentiles(len(samples_us), mean, p50, p99, p99_9, p99_99, largest)
-
-
-def _both(ticks: NDArray[np.void], name: str) -> NDArray[Any]:
-    """One field of both driven wheels, left then right: (2 n,)."""
-    return np.concatenate([ticks[name.format(wheel)] for wheel in ("fl", "fr")])
 
 
 def _counts(values: NDArray[Any], names: type[IntEnum]) -> dict[str, int]:

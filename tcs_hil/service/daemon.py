@@ -9,11 +9,12 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
-from tcs_hil.canbus.database import load_database
+from tcs_hil.canbus.database import Database, load_database
 from tcs_hil.canbus.port import CanPort, open_port
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.runtime import recording
-from tcs_hil.runtime.clock import MonotonicClock
+from tcs_hil.runtime.clock import Clock, MonotonicClock
+from tcs_hil.runtime.frame_trigger import FrameTrigger
 from tcs_hil.runtime.lockstep import LockstepTrigger
 from tcs_hil.runtime.loop import Loop
 from tcs_hil.runtime.notify import Watchdog, notify
@@ -26,6 +27,7 @@ from tcs_hil.runtime.trigger import TimerTrigger, Trigger
 from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.service.wiring import build_laws, build_pipeline
 
+NS_PER_US = 1_000
 NS_PER_S = 1_000_000_000
 
 
@@ -35,7 +37,7 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
     Raises:
         TcsError: DBC, model, interface or recording cannot be used.
     """
-    clock = MonotonicClock()
+    clock = MonotonicClock(config.tick.spin_us * NS_PER_US)
     database = load_database(None if config.bus.database is None else Path(config.bus.database))
     laws = build_laws(config, clock)
     with ExitStack() as cleanup:
@@ -46,7 +48,7 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
         recorder = cleanup.enter_context(_recorder(config, path, description))
         node = TcsNode(database)
         loop = Loop(
-            trigger=_trigger(config, clock, port, node, database.messages["BenchTick"].frame_id),
+            trigger=_trigger(config, clock, port, node, database),
             port=port,
             node=node,
             pipeline=build_pipeline(config, laws),
@@ -57,8 +59,8 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
         )
         announce(f"bus: {description}")
         announce(f"controller: {config.controller}, slip reference {config.control.slip_reference}")
-        if config.tick.trigger == "timer":
-            for grant in prepare():
+        if config.tick.trigger != "lockstep":
+            for grant in prepare(config.tick.cpu, config.tick.priority):
                 announce(f"{'with' if grant.got else 'without'} {grant.what} ({grant.why})")
         notify("READY=1")
         loop.run(stop.requested)
@@ -67,12 +69,17 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
 
 
 def _trigger(
-    config: ServiceConfig, clock: MonotonicClock, port: CanPort, node: TcsNode, tick_id: int
+    config: ServiceConfig, clock: Clock, port: CanPort, node: TcsNode, database: Database
 ) -> Trigger:
     period_ns = _period_ns(config)
     if config.tick.trigger == "lockstep":
+        tick_id = database.messages["BenchTick"].frame_id
         return LockstepTrigger(clock, port, node, tick_id, period_ns)
-    return TimerTrigger(clock, port, period_ns, config.tick.phase_us * 1000)
+    if config.tick.trigger == "frame":
+        # The last wheel speeds of a cycle: once they are there, all of it is.
+        frame_id = database.messages["WheelSpeedsRear"].frame_id
+        return FrameTrigger(clock, port, frame_id, period_ns)
+    return TimerTrigger(clock, port, period_ns, config.tick.phase_us * NS_PER_US)
 
 
 def _recorder(config: ServiceConfig, path: Path, bus: str) -> FlightRecorder:

@@ -10,11 +10,12 @@ from msgspec import Meta
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.gate import GateSettings
 from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.runtime.realtime import FIFO_PRIORITY
 from tcs_hil.signals import ControllerKind
 from tcs_hil.supervisor import SupervisorSettings
 
 ControllerName = Literal["off", "pi", "kmpc", "nmpc"]
-TriggerName = Literal["timer", "lockstep"]
+TriggerName = Literal["timer", "frame", "lockstep"]
 
 
 class BusSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -27,17 +28,26 @@ class BusSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
 
 class TickSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What starts a tick: the 2 ms grid shifted by ``phase_us``, or a bench in lockstep."""
+    """What starts a tick, and what the operating system is asked for to start it on time.
+
+    ``timer`` is the 2 ms grid shifted by ``phase_us``, ``frame`` the rear wheel
+    speeds, ``lockstep`` a bench.  The timer may watch the clock for the last
+    ``spin_us`` instead of sleeping.  ``priority`` is that of SCHED_FIFO; ``cpu``
+    the core to stay on.
+    """
 
     trigger: TriggerName = "timer"
     phase_us: Annotated[int, Meta(ge=0, lt=20_000)] = 0
+    spin_us: Annotated[int, Meta(ge=0, le=1_000)] = 0
+    priority: Annotated[int, Meta(ge=1, le=99)] = FIFO_PRIORITY
+    cpu: Annotated[int, Meta(ge=0)] | None = None
 
 
 class RecorderSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Flight recording: none without a path; the newest ``ticks`` are kept."""
 
     path: str | None = None
-    ticks: Annotated[int, Meta(ge=1, le=100_000_000)] = 300_000
+    ticks: Annotated[int, Meta(ge=1, le=10_000_000)] = 100_000
 
 
 class ServiceConfig(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

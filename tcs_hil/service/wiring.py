@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from tcs_hil.control.factory import make_controller
-from tcs_hil.estimator import Estimator
+from tcs_hil.estimator import Estimates, Estimator
+from tcs_hil.estimator.fused import FusedEstimator
 from tcs_hil.gate import Gate
+from tcs_hil.model.bank import KoopmanBank, default_bank_path
 from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
 from tcs_hil.pipeline import Law, Pipeline
 from tcs_hil.runtime.clock import Clock
@@ -24,10 +26,7 @@ def build_laws(config: ServiceConfig, clock: Clock) -> Laws:
     Raises:
         ModelError: the Koopman predictor cannot be used.
     """
-    predictor = None
-    if config.kind is ControllerKind.KMPC:
-        path = default_model_path() if config.model is None else Path(config.model)
-        predictor = KoopmanPredictor.load(path, config.control.period_s)
+    predictor = _predictor(config) if config.kind is ControllerKind.KMPC else None
     left, right = (
         TimedController(
             make_controller(config.kind, config.control, config.vehicle, predictor), clock
@@ -37,12 +36,26 @@ def build_laws(config: ServiceConfig, clock: Clock) -> Laws:
     return left, right
 
 
+def _predictor(config: ServiceConfig) -> KoopmanPredictor | KoopmanBank:
+    """The model file that the preset needs: the configured one, or the one shipped for it."""
+    period_s = config.control.period_s
+    if config.control.preset == "paper":
+        return KoopmanPredictor.load(Path(config.model or default_model_path()), period_s)
+    return KoopmanBank.load(Path(config.model or default_bank_path()), period_s)
+
+
 def build_pipeline(config: ServiceConfig, laws: Laws) -> Pipeline:
     """The code between measurement and command around the two laws."""
     period_s = config.control.period_s
     return Pipeline(
-        Estimator(config.vehicle),
+        _estimator(config),
         Supervisor(config.supervisor),
         Law(config.kind, config.control.slip_reference, laws),
         (Gate(config.gate, period_s), Gate(config.gate, period_s)),
     )
+
+
+def _estimator(config: ServiceConfig) -> Estimates:
+    if config.control.preset == "paper":
+        return Estimator(config.vehicle)
+    return FusedEstimator(config.control, config.vehicle)

@@ -38,7 +38,7 @@ def test_a_message_carries_its_frame_cycle_and_protection():
 
 def test_the_two_nodes_share_out_the_identifiers():
     database = load_database()
-    assert database.frame_ids_of("TCS") == {0x90, 0x300, 0x7F1}
+    assert database.frame_ids_of("TCS") == {0x90, 0x300, 0x301, 0x7F1}
     assert database.frame_ids_of("VEHICLE") == {0x98, 0xA0, 0xA1, 0xA2, 0x7F0}
 
 

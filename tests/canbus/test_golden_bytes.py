@@ -13,7 +13,7 @@ import pytest
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
-from tcs_hil.signals import NO_LIMIT, Command, ControllerKind, TcsState, TorqueLimits
+from tcs_hil.signals import NO_LIMIT, Command, ControllerKind, RoadEstimate, TcsState, TorqueLimits
 
 DATA_IDS = {
     0x090: "9017A33C5D0EE4718B26F1486AD5B20F",
@@ -38,6 +38,8 @@ GOLDEN = {
 }
 # slips raw -200 and 250 at 0 and 12, reference 200 at 24, KMPC at 34, fault 7, 513 overruns
 GOLDEN_STATUS = "38 af 0f c8 08 07 01 02"
+# mu raw 300 at 0 and 1050 at 11, confidence 100 at 22 and 7 at 29, delay 586 at 36
+GOLDEN_ESTIMATES = "2c d1 20 f9 a0 24"
 
 SIGNALS = VehicleSignals(
     wheel_speed_radps=(12.34, 655.35, 12.34, 0.01),
@@ -55,6 +57,7 @@ COMMAND = Command(
     controller=ControllerKind.KMPC,
     slip_ratio=(-0.1, 0.125),
     slip_reference=0.1,
+    road=RoadEstimate((0.3, 1.05), (1.0, 0.07), 0.00586),
 )
 
 
@@ -99,6 +102,14 @@ def test_the_service_sends_the_golden_bytes(counter):
     assert frames == [(frame_id, bytes.fromhex(text)) for frame_id, text in expected]
 
 
+def test_the_service_tells_its_estimates_in_a_tick_of_their_own():
+    node = TcsNode(load_database())
+    sent = [node.frames(COMMAND, tick * 2_000_000)[0] for tick in range(20)]
+    estimates = (0x301, bytes.fromhex(GOLDEN_ESTIMATES))
+    assert [tick for tick, frame in enumerate(sent) if frame == estimates] == [1, 11]
+    assert [tick for tick, (frame_id, _) in enumerate(sent) if frame_id == 0x300] == [0, 10]
+
+
 def test_the_service_reads_the_golden_bytes():
     node = TcsNode(load_database())
     for frame_id in (0x098, 0x0A0, 0x0A1, 0x0A2):
@@ -123,6 +134,10 @@ def test_the_vehicle_reads_the_golden_bytes():
     assert status.slip_reference == pytest.approx(COMMAND.slip_reference)
     assert (status.controller, status.fault_code) == (ControllerKind.KMPC, 7)
     assert status.tick_overruns == 513
+    assert node.feed(0x301, bytes.fromhex(GOLDEN_ESTIMATES), 0)
+    assert node.road.friction_ratio == pytest.approx(COMMAND.road.friction_ratio)
+    assert node.road.confidence_ratio == pytest.approx(COMMAND.road.confidence_ratio)
+    assert node.road.loop_delay_s == pytest.approx(COMMAND.road.loop_delay_s)
 
 
 @pytest.mark.parametrize(("tick", "payload"), [(1, "01 00 00 00"), (0x12345678, "78 56 34 12")])

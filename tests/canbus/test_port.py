@@ -122,6 +122,14 @@ def test_a_removed_interface_is_reopened(code):
     assert port.counters.reopened == 1
 
 
+def test_one_who_only_waits_and_sends_gets_his_interface_back_too():
+    gone = ScriptedBus(send_error=operation_error(errno.ENODEV))
+    port = CanPort(gone, reopen=lambda: ScriptedBus(message(b"back")))
+    assert not port.send(0x90, b"")
+    assert port.wait(0.0)
+    assert [frame.data for frame in port.receive()] == [b"back"]
+
+
 def test_an_interface_that_is_merely_down_is_not_reopened():
     port = CanPort(ScriptedBus(operation_error(errno.ENETDOWN)), reopen=ScriptedBus)
     port.receive()

@@ -105,7 +105,9 @@ def test_a_bad_configuration_is_refused_in_one_sentence(
 def test_a_model_for_another_sampling_time_is_refused(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, other_period: Path
 ) -> None:
-    status, _, error = run(monkeypatch, capsys, "run", "--model", str(other_period))
+    status, _, error = run(
+        monkeypatch, capsys, "run", "--preset", "paper", "--model", str(other_period)
+    )
     assert status == 2
     assert "fast.npz" in error
     assert "0.001" in error

@@ -22,4 +22,4 @@ def predictor() -> KoopmanPredictor:
 @pytest.fixture(scope="session")
 def make(predictor: KoopmanPredictor) -> Callable[[ControllerKind], Controller]:
     """A new controller of a kind, with the paper's settings."""
-    return lambda kind: make_controller(kind, ControlSettings(), Vehicle(), predictor)
+    return lambda kind: make_controller(kind, ControlSettings(preset="paper"), Vehicle(), predictor)

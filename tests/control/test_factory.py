@@ -22,7 +22,7 @@ from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.signals import ControllerKind
 predictor = KoopmanPredictor.load(default_model_path(), 0.002)
-make_controller(ControllerKind[sys.argv[1]], ControlSettings(), Vehicle(), predictor)
+make_controller(ControllerKind[sys.argv[1]], ControlSettings(preset="paper"), Vehicle(), predictor)
 print(*sorted({"casadi", "daqp", "osqp"} & sys.modules.keys()))
 """
 
@@ -42,6 +42,6 @@ def test_kmpc_without_a_model_is_refused() -> None:
 
 
 def test_a_model_for_another_period_is_refused(predictor: KoopmanPredictor) -> None:
-    settings = ControlSettings(period_s=0.004)
+    settings = ControlSettings(preset="paper", period_s=0.004)
     with pytest.raises(ConfigError, match=r"period_s is 0\.004"):
         make_controller(ControllerKind.KMPC, settings, Vehicle(), predictor)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tcs_hil.control.integrator import SlipErrorIntegral
+from tcs_hil.control.integrator import BoundedIntegral, SlipErrorIntegral
 
 
 @pytest.fixture
@@ -41,3 +41,30 @@ def test_reset_takes_it_back_to_zero(integral: SlipErrorIntegral) -> None:
     integral.advance(0.2, 50.0, 100.0)
     integral.reset()
     assert integral.value_s == 0.0
+
+
+@pytest.fixture
+def bounded() -> BoundedIntegral:
+    return BoundedIntegral(slip_reference=0.1, period_s=0.002, limit_s=0.001)
+
+
+def test_the_bounded_integral_stays_within_its_limit(bounded: BoundedIntegral) -> None:
+    for _ in range(1000):
+        bounded.advance(0.4, 50.0, 100.0)
+    assert bounded.value_s == -0.001
+
+
+@pytest.mark.parametrize(("slip_ratio", "torque_nm"), [(0.05, 100.0), (0.3, 0.0)])
+def test_at_a_bound_an_error_that_pushes_outwards_does_not_count(
+    bounded: BoundedIntegral, slip_ratio: float, torque_nm: float
+) -> None:
+    bounded.advance(slip_ratio, torque_nm, 100.0)
+    assert bounded.value_s == 0.0
+
+
+@pytest.mark.parametrize(("slip_ratio", "torque_nm"), [(0.3, 100.0), (0.05, 0.0)])
+def test_at_a_bound_an_error_that_leads_back_inside_counts(
+    bounded: BoundedIntegral, slip_ratio: float, torque_nm: float
+) -> None:
+    bounded.advance(slip_ratio, torque_nm, 100.0)
+    assert bounded.value_s == pytest.approx(0.002 * (0.1 - slip_ratio))

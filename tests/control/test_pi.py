@@ -11,7 +11,7 @@ from tests.control.recorder import wheel_at
 
 @pytest.fixture
 def controller() -> PiController:
-    return PiController(ControlSettings())
+    return PiController(ControlSettings(preset="paper"))
 
 
 def test_it_takes_over_from_the_driver_without_a_bump(controller: PiController) -> None:
@@ -46,7 +46,7 @@ def test_an_integral_held_down_by_a_small_request_does_not_wind_up(
 
 def test_the_gain_rises_with_speed_up_to_its_ceiling() -> None:
     def drop(speed_mps: float) -> float:
-        controller = PiController(ControlSettings())
+        controller = PiController(ControlSettings(preset="paper"))
         controller.step(wheel_at(speed_mps, 0.1), 150.0)
         return 150.0 - controller.step(wheel_at(speed_mps, 0.15), 150.0).torque_nm
 

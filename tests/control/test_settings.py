@@ -17,6 +17,10 @@ def test_the_defaults_are_table_ii_of_the_paper() -> None:
     assert (nmpc.weight_slip, nmpc.weight_integral, nmpc.weight_reduction) == (1e3, 1e5, 1.6e-7)
 
 
+def test_a_service_nobody_told_otherwise_runs_the_laws_for_a_real_bus() -> None:
+    assert ControlSettings().preset == "default"
+
+
 @pytest.mark.parametrize(
     "table",
     [
@@ -31,6 +35,10 @@ def test_the_defaults_are_table_ii_of_the_paper() -> None:
         {"pi": {"integral_time_s": 0.0}},
         {"pi": {"entry_ratio": 1.5}},
         {"nmpc": {"horison": 5}},
+        {"preset": "wild"},
+        {"default": {"delay": {"delay_s": 0.1}}},
+        {"default": {"nmpc": {"blocks": [1, 3]}}},
+        {"default": {"driveline": {"motor_lag_s": 0.0}}},
     ],
 )
 def test_a_value_out_of_bounds_or_an_unknown_key_is_refused(table: dict[str, object]) -> None:

@@ -24,7 +24,7 @@ request = [[0.05, 0.0], [0.25, 250.0]]
 """
 
 PERIOD_NS = 2_000_000
-SERVICE_IDS = {0x090, 0x300, 0x7F1}
+SERVICE_IDS = {0x090, 0x300, 0x301, 0x7F1}
 DECISIONS = ("now_ns", "slip_ratio_fl", "proposal_fl_nm", "limit_fl_nm", "limit_fr_nm", "state")
 
 
@@ -42,6 +42,7 @@ def plan(tmp_path: Path):
             folder=tmp_path / name,
             interface="embedded",
             channel=f"vcan-{uuid.uuid4().hex[:8]}",
+            preset="paper",
         )
 
     return make

@@ -4,18 +4,20 @@ import numpy as np
 import pytest
 
 from plant_emulator.scenario import load_scenario
+from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.metrics import SlipMetrics, slip_metrics
 from tcs_hil.hil.simulation import Simulation, simulate
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.service.settings import ControllerName, ServiceConfig
 from tcs_hil.signals import TcsState
 
+PAPER = ControlSettings(preset="paper")
 CITY_SPEED_MPS = 40.0 / 3.6
 
 
 def run(manoeuvre: str, controller: ControllerName) -> Simulation:
     scenario = load_scenario(manoeuvre).with_variant("quarter-car")
-    return simulate(scenario, ServiceConfig(controller=controller))
+    return simulate(scenario, ServiceConfig(controller=controller, control=PAPER))
 
 
 def judge(manoeuvre: str, controller: ControllerName, up_to_mps: float = np.inf) -> SlipMetrics:

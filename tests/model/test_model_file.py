@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import zipfile
 from pathlib import Path
 
@@ -137,7 +138,7 @@ def test_a_file_with_other_arrays_is_refused(paper, tmp_path):
 
 def test_an_unknown_layout_is_refused_before_its_content_is_judged(tmp_path):
     future = resealed(tmp_path / "f.npz", {"layout_version": 99, "surprise": True})
-    with pytest.raises(ModelError, match=r"f\.npz' has layout 99, this version reads 1"):
+    with pytest.raises(ModelError, match=r"f\.npz' has layout 99, this version reads 2"):
         load(future)
 
 
@@ -167,3 +168,8 @@ def test_an_array_of_something_else_is_refused(tmp_path):
     words = resealed(tmp_path / "w.npz", {}, a=np.array(["a", "b"]))
     with pytest.raises(ModelError, match=r"w\.npz' holds an unreadable array"):
         load(words)
+
+
+def test_the_papers_matrices_are_bit_for_bit_those_its_figures_were_made_with(paper):
+    content = hashlib.sha256(paper.a.tobytes() + paper.b.tobytes()).hexdigest()
+    assert content == "db678611039ffa70136373fdd936232de19d0ab5f20b23b1cfb8f1593088ed68"

@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Iterable, Sequence
 
+from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.port import Frame, PortCounters
 from tcs_hil.control.protocol import Proposal, WheelState
 from tcs_hil.estimator import Estimate
@@ -95,6 +96,7 @@ class FakeNode:
     bench_tick: int | None = None
 
     def __init__(self, wheel_stamp_ns: int | None = None) -> None:
+        self.counters = InboxCounters()
         self.newest_wheel_stamp_ns = wheel_stamp_ns
         self.fed: list[Frame] = []
         self.overruns: list[int] = []
@@ -135,8 +137,9 @@ def made_pass(number: int = 0, *, sent_us: int = 90, scheduled_ns: int = PERIOD_
 
 
 def insight(wheel_stamp_ns: int | None = None) -> Insight:
-    counters = PortCounters(rx=101, tx=102, error_frames=1, rx_errors=2, tx_errors=3)
-    return Insight(TRACE, (81, 82), wheel_stamp_ns, counters)
+    counters = PortCounters(rx=101, tx=102, error_frames=1, lost=4, rx_errors=2, tx_errors=3)
+    inbox = InboxCounters(e2e_error=5, repeated=6, wrong_sequence=7)
+    return Insight(TRACE, (81, 82), wheel_stamp_ns, counters, inbox)
 
 
 RUN = RunInfo(

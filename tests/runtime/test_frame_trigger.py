@@ -57,6 +57,12 @@ def test_a_frame_that_comes_just_after_it_was_given_up_starts_no_second_tick() -
     assert in_periods(ticks(3, rear(1.0), rear(2.6), rear(3.0))) == [1.0, 2.5, 3.0]
 
 
+def test_frames_that_come_just_too_late_are_caught_up_with() -> None:
+    made = ticks(4, rear(1.6), rear(2.6), rear(3.6), rear(4.6))
+    assert in_periods(made) == [1.5, 2.6, 3.6, 4.6]
+    assert [(tick.number, tick.skipped) for tick in made] == [(0, 0), (1, 0), (2, 0), (3, 0)]
+
+
 def test_after_a_stall_one_tick_serves_all_frames_and_counts_the_others() -> None:
     clock = FakeClock()
     port = FakePort(clock, [rear(n) for n in range(1, 6)])
@@ -70,11 +76,20 @@ def test_after_a_stall_one_tick_serves_all_frames_and_counts_the_others() -> Non
 
 def test_after_a_stall_on_a_silent_bus_the_missed_ticks_are_counted() -> None:
     clock = FakeClock()
-    trigger = FrameTrigger(clock, FakePort(clock), REAR, PERIOD_NS)
+    trigger = FrameTrigger(clock, FakePort(clock, [rear(1.0)]), REAR, PERIOD_NS)
+    trigger.wait()
     clock.work(5 * PERIOD_NS + PERIOD_NS // 2)
     late, following = trigger.wait(), trigger.wait()
-    assert (late.skipped, late.scheduled_ns) == (4, 5 * PERIOD_NS)
+    assert (late.skipped, late.scheduled_ns) == (4, 6 * PERIOD_NS)
     assert following.wake_ns - late.wake_ns == PERIOD_NS
+
+
+def test_time_before_the_first_wait_is_nobodys_tick() -> None:
+    clock = FakeClock()
+    trigger = FrameTrigger(clock, FakePort(clock), REAR, PERIOD_NS)
+    clock.work(5 * PERIOD_NS)
+    first = trigger.wait()
+    assert (first.skipped, first.number, first.wake_ns) == (0, 0, 6.5 * PERIOD_NS)
 
 
 class BabblingPort(FakePort):

@@ -32,6 +32,16 @@ def test_a_sleep_never_ends_before_its_deadline() -> None:
         assert clock.now_ns() >= deadline_ns
 
 
+def test_the_end_of_a_wait_is_spent_awake_when_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    slept_s: list[float] = []
+    monkeypatch.setattr("time.sleep", slept_s.append)  # returns at once: the rest is spun
+    clock = MonotonicClock(spin_ns=1_000_000)
+    deadline_ns = clock.now_ns() + 2_000_000
+    clock.sleep_until(deadline_ns)
+    assert clock.now_ns() >= deadline_ns
+    assert 0 < slept_s[0] <= 0.001
+
+
 def test_a_signal_does_not_cut_a_sleep_short() -> None:
     previous = signal.signal(signal.SIGALRM, lambda *_: None)
     try:
@@ -105,13 +115,13 @@ from tcs_hil.runtime import realtime
 def refuse(*_):
     raise PermissionError(1, "Operation not permitted")
 os.sched_setscheduler = os.sched_setaffinity = refuse
-for grant in realtime.prepare(cpu=4096):
+for grant in realtime.prepare(cpu=4096, priority=60):
     print(grant.got, grant.what, grant.why, sep="|")
 """)
     answers = [line.split("|") for line in ended.stdout.splitlines()]
     assert answers[3] == [
         "False",
-        "SCHED_FIFO 50",
+        "SCHED_FIFO 60",
         "Operation not permitted: raise LimitRTPRIO / ulimit -r",
     ]
     assert answers[4][0] == "False"

@@ -12,12 +12,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from runtime.fakes import PERIOD_NS, RUN, insight, made_pass, numbered
 
 from tcs_hil.control.protocol import SolveStatus
 from tcs_hil.runtime.record import FIELDS, NO_LATENCY, PACKER, record
 from tcs_hil.runtime.recorder import FlightRecorder
-from tcs_hil.runtime.recording import PREAMBLE, RecordingError, read, read_info
+from tcs_hil.runtime.recording import PREAMBLE, RecordingError, read, read_info, read_on
 from tcs_hil.signals import ControllerKind, TcsState
 
 
@@ -54,6 +55,10 @@ def test_every_field_comes_back_under_its_own_name(path: Path) -> None:
         "rx_frames": 101,
         "tx_frames": 102,
         "bus_errors": 6,
+        "lost_frames": 4,
+        "e2e_errors": 5,
+        "e2e_repeated": 6,
+        "e2e_wrong_sequence": 7,
         "iterations_fl": 3,
         "iterations_fr": 4,
         "front_speed_age_s": 0.001,
@@ -125,6 +130,40 @@ def test_a_recording_is_read_while_it_is_written(path: Path) -> None:
         for number in range(12):
             recorder.write(numbered(number))
             assert read(path)["number"][-1] == number
+
+
+def test_a_reader_that_comes_back_gets_what_is_new(path: Path) -> None:
+    with FlightRecorder(path, RUN, 8) as recorder:
+        for number in range(3):
+            recorder.write(numbered(number))
+        _, bookmark = read_on(path, None)
+        assert bookmark == (RUN, 3)
+        for number in range(3, 5):
+            recorder.write(numbered(number))
+        news, bookmark = read_on(path, bookmark)
+        assert news["number"].tolist() == [3, 4]
+        news, bookmark = read_on(path, bookmark)
+        assert (len(news), bookmark.made) == (0, 5)
+
+
+def test_a_reader_that_was_away_too_long_misses_what_the_ring_dropped(path: Path) -> None:
+    with FlightRecorder(path, RUN, 8) as recorder:
+        recorder.write(numbered(0))
+        _, bookmark = read_on(path, None)
+        for number in range(1, 30):
+            recorder.write(numbered(number))
+        news, bookmark = read_on(path, bookmark)
+    assert news["number"].tolist() == [23, 24, 25, 26, 27, 28, 29]
+    assert bookmark.made == 30
+
+
+def test_another_run_is_read_from_its_start(path: Path) -> None:
+    write(path, ticks=5, capacity=8)
+    _, bookmark = read_on(path, None)
+    with FlightRecorder(path, replace(RUN, started_monotonic_ns=99), 8) as recorder:
+        recorder.write(numbered(0))
+    news, bookmark = read_on(path, bookmark)
+    assert (len(news), bookmark.made, bookmark.run.started_monotonic_ns) == (1, 1, 99)
 
 
 def test_the_header_says_which_run_it_was(path: Path) -> None:

@@ -74,7 +74,7 @@ def test_overruns_skips_and_failures_are_counted(summarised: Summarised) -> None
     skipper = late._replace(tick=late.tick._replace(skipped=4), failed=True)
     summary = summarised([record(made, insight()) for made in (late, skipper, made_pass())])
     assert (summary.ticks, summary.overruns, summary.skipped, summary.failures) == (3, 2, 4, 1)
-    assert summary.bus_errors == 6
+    assert (summary.bus_errors, summary.lost_frames, summary.e2e_errors) == (6, 4, 5)
 
 
 def test_states_and_statuses_are_counted_by_name(summarised: Summarised) -> None:

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import can
+import numpy as np
 import pytest
 
 from tcs_hil.canbus.bus import open_bus
@@ -20,6 +21,7 @@ from tcs_hil.signals import TcsState
 
 LIMIT_ID = 0x090
 NO_LIMIT_BITS = 0x3FFF
+HALF_A_PERIOD_NS = 1_000_000
 
 
 @pytest.fixture
@@ -113,3 +115,44 @@ def test_the_configuration_file_is_obeyed_and_options_win(
     with program("tcs_hil", "run", "--config", str(config), "--controller", "pi", log=log):
         limits(stranger, 1)
     assert "controller: pi" in log.read_text()
+
+
+def test_a_service_that_ticks_with_a_frame_gives_a_missing_one_half_a_period(
+    channel: str, tmp_path: Path, stranger: can.BusABC
+) -> None:
+    flight = tmp_path / "flight.tcsrec"
+    options = ("--trigger", "frame", "--controller", "off", "--flight-recording", str(flight))
+    with daemon(channel, tmp_path, *options):
+        limits(stranger, 10)
+    ticks = read(flight)
+    # The median: on a crowded machine some tick may be later still, and give its turn away.
+    assert np.median(ticks["wake_ns"] - ticks["scheduled_ns"]) >= HALF_A_PERIOD_NS
+
+
+def test_its_recording_is_reported_while_it_runs(
+    channel: str, tmp_path: Path, stranger: can.BusABC
+) -> None:
+    flight = tmp_path / "flight.tcsrec"
+    report = [sys.executable, "-m", "tcs_hil", "report", str(flight), "--worst", "1", "--json"]
+    with daemon(channel, tmp_path, "--controller", "off", "--flight-recording", str(flight)):
+        counts = []
+        for _ in range(2):
+            limits(stranger, 20)
+            output = subprocess.run(report, capture_output=True, text=True, check=True).stdout
+            counts.append(json.loads(output)["ticks"])
+        limits(stranger, 1)
+    assert 20 <= counts[0] < counts[1] < len(read(flight))
+
+
+@pytest.mark.parametrize("option", ["--priority=0", "--spin-us=5000", "--cpu=-1"])
+def test_an_impossible_tick_is_refused_before_the_bus_is_opened(
+    channel: str, tmp_path: Path, option: str
+) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-m", "tcs_hil", "run", "--channel", channel, option],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 2
+    assert f"tick.{option[2:].partition('=')[0].replace('-', '_')}" in ended.stderr

@@ -3,18 +3,24 @@
 from collections.abc import Callable
 from decimal import Decimal
 from itertools import pairwise
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.port import CanPort
 from tcs_hil.runtime.clock import MonotonicClock
+from tcs_hil.runtime.recording import read
 
 from .conftest import CHANNEL, Candump
+from .test_processes import daemon, next_limit
 
 TICKS = 200
 PERIOD_NS = 2_000_000
 SETTLING_NS = 20_000_000  # the first sleep after long computing ends on the guest's 10 ms tick
+WHEEL_SPEEDS_REAR = 0x0A2
+PROMPT_NS = 50_000  # a tick without its frame wakes 1 ms after it was due
 ROUNDING_US = 1  # candump writes whole microseconds
 
 pytestmark = pytest.mark.simulated_time
@@ -31,3 +37,21 @@ def test_frames_sent_on_the_grid_are_one_period_apart(candump: Callable[[int], C
     stamps_us = [Decimal(line.split()[0].strip("()")) * 1_000_000 for line in dump.lines()]
     gaps_us = [float(later - earlier) for earlier, later in pairwise(stamps_us)]
     assert gaps_us == pytest.approx([PERIOD_NS / 1000] * (TICKS - 1), abs=ROUNDING_US)
+
+
+def test_a_service_that_ticks_with_the_wheel_speeds_wakes_when_they_come(tmp_path: Path) -> None:
+    flight, clock = tmp_path / "flight", MonotonicClock()
+    bus, _ = open_bus("auto", CHANNEL)
+    with bus, daemon(tmp_path, "--trigger", "frame", "--flight-recording", str(flight)):
+        next_limit(bus)
+        port = CanPort(open_bus("auto", CHANNEL)[0])
+        start_ns = clock.now_ns() + SETTLING_NS
+        for tick in range(TICKS):
+            clock.sleep_until(start_ns + tick * PERIOD_NS)
+            assert port.send(WHEEL_SPEEDS_REAR, bytes(8))
+        port.close()
+    ticks = read(flight)
+    met = ticks[ticks["frames"] > 0]
+    # The first may come just after a tick that was made without it, and be nobody's start.
+    assert len(met) >= TICKS - 1
+    assert np.median(met["wake_ns"] - met["scheduled_ns"]) < PROMPT_NS

@@ -1,5 +1,7 @@
 """Our port on a real vcan0 among programs that are not ours, and with its link pulled."""
 
+import socket
+import time
 from collections.abc import Callable, Iterator
 
 import can
@@ -12,6 +14,7 @@ from .conftest import CHANNEL, PATIENCE_S, Candump, Interface
 
 StartCandump = Callable[[int], Candump]
 SendFrame = Callable[[str], None]
+CLOCKS_APART_NS = 5_000_000  # two clocks are read one after the other to move a stamp over
 
 
 def reopened() -> can.BusABC:
@@ -55,6 +58,32 @@ def test_remote_and_extended_frames_of_strangers_are_counted_and_dropped(
         cansend(frame)
     assert received(port) == [(0x321, b"\x01")]
     assert (port.counters.remote_frames, port.counters.dropped) == (1, 1)
+
+
+def test_frames_the_kernel_had_no_room_for_are_counted(cansend: SendFrame) -> None:
+    bus, sender = reopened(), CanPort(reopened())
+    bus.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)  # the smallest there is
+    port, sent = CanPort(bus), 200
+    for _ in range(sent):
+        assert sender.send(0x123, b"")
+    received = len(port.receive())
+    cansend("321#04")  # the count travels with the first frame that came after the loss
+    port.receive()
+    assert received < sent
+    assert port.counters.lost == sent - received
+    port.close()
+    sender.close()
+
+
+def test_a_frame_is_stamped_when_it_came_and_not_when_it_is_read(
+    port: CanPort, cansend: SendFrame
+) -> None:
+    before_ns = time.monotonic_ns()
+    cansend("123#00")
+    after_ns = time.monotonic_ns()
+    time.sleep(0.05)
+    (frame,) = port.receive()
+    assert before_ns <= frame.stamp_ns <= after_ns + CLOCKS_APART_NS
 
 
 def test_a_port_outlives_its_link_going_down_and_up(

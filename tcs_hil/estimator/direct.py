@@ -1,24 +1,14 @@
-"""Vehicle speed from the rolling rear wheels, slip of each driven front wheel."""
+"""Speeds as they are on the bus: body from the rolling rear wheels, slip of each front wheel."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from tcs_hil.control.protocol import WheelState
+from tcs_hil.estimator.estimate import Estimate
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.model.wheel import slip_ratio
-from tcs_hil.signals import FourWheels, Measurement
+from tcs_hil.signals import FourWheels, Measurement, Pair
 
-FRONT = (0, 1)
 REAR = (2, 3)
-
-
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """State of the car at one tick: body speed and both driven wheels (left, right)."""
-
-    vehicle_speed_mps: float
-    wheels: tuple[WheelState, WheelState]
 
 
 class Estimator:
@@ -54,6 +44,9 @@ class Estimator:
             ),
         )
         return self.newest
+
+    def sent(self, torque_nm: Pair, request_nm: Pair) -> None:
+        """Nothing to learn: the paper knows no delay."""
 
     def _body_speed_mps(self, measurement: Measurement) -> float:
         """Mean of the rear wheels that vouch for themselves; both held when neither does."""

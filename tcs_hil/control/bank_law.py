@@ -1,0 +1,36 @@
+"""The default Koopman MPC put together: bank, delay, integral, and a PI where data end."""
+
+from __future__ import annotations
+
+from tcs_hil.control.bank_kmpc import BankOptimiser
+from tcs_hil.control.compensated import CompensatedController, DelayedOptimiser
+from tcs_hil.control.grip_update import GripOptimiser
+from tcs_hil.control.guarded import GuardedController
+from tcs_hil.control.integrator import BoundedIntegral
+from tcs_hil.control.pi import PiController
+from tcs_hil.control.protocol import Controller
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.errors import ConfigError
+from tcs_hil.model.bank import KoopmanBank, slippery_bank_path
+
+
+def bank_mpc(settings: ControlSettings, bank: KoopmanBank) -> Controller:
+    """One wheel's default KMPC.
+
+    Raises ConfigError for a bank made for another period, and ModelError if the
+    online update is on and the shipped bank for ice cannot be used.
+    """
+    if bank.period_s != settings.period_s:
+        raise ConfigError(f"period_s is {settings.period_s}, but the bank is for {bank.period_s}")
+    integral = BoundedIntegral(
+        settings.slip_reference, settings.period_s, settings.default.integral_limit_s
+    )
+    law = CompensatedController(_optimiser(settings, bank), integral, settings.period_s)
+    return GuardedController(law, PiController(settings), bank.validity, settings.period_s)
+
+
+def _optimiser(settings: ControlSettings, bank: KoopmanBank) -> DelayedOptimiser:
+    if not settings.default.kmpc.online_update:
+        return BankOptimiser(settings, bank)
+    slippery = KoopmanBank.load(slippery_bank_path(), settings.period_s)
+    return GripOptimiser(settings, (bank, slippery))

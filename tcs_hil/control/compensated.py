@@ -1,0 +1,68 @@
+"""What both default laws share: the state rolled through the delay, then planned from."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from tcs_hil.control.integrator import BoundedIntegral
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
+from tcs_hil.control.screening import clamp, settled
+from tcs_hil.control.sent import FloatArray, Predicts, SentTorques, roll_forward
+
+
+class DelayedOptimiser(Predicts, Protocol):
+    """A law that plans from a state of its own prediction model."""
+
+    def state(self, wheel: WheelState, integral_s: float) -> FloatArray:
+        """State (nx,) of the model at the instant ``wheel`` describes; called once a tick."""
+        ...
+
+    def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+        """Torques in Nm within [0, torque_ref_nm] from ``state`` on, after ``last_torque_nm``."""
+        ...
+
+    def reset(self) -> None:
+        """Forget the last plan and everything estimated."""
+        ...
+
+
+class CompensatedController:
+    """Receding horizon from the state at which the command will act.
+
+    ``wheel.loop_delay_s`` says how long that is after the instant of the
+    measurement; the prediction model carries the state, e_int with it, through
+    the torques already sent.
+    """
+
+    def __init__(
+        self, optimiser: DelayedOptimiser, integral: BoundedIntegral, period_s: float
+    ) -> None:
+        self._optimiser = optimiser
+        self._integral = integral
+        self._period_s = period_s
+        self._sent = SentTorques()
+
+    def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
+        """Propose the motor torque for the coming period."""
+        proposal = settled(wheel, torque_ref_nm) or self._solve(wheel, torque_ref_nm)
+        self._sent.push(clamp(proposal.torque_nm, max(torque_ref_nm, 0.0)))
+        return proposal
+
+    def reset(self) -> None:
+        """Forget everything, as at start-up."""
+        self._integral.reset()
+        self._optimiser.reset()
+        self._sent.reset()
+
+    def _solve(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
+        measured = self._optimiser.state(wheel, self._integral.value_s)
+        delay_periods = wheel.loop_delay_s / self._period_s
+        state = roll_forward(self._optimiser, measured, self._sent, delay_periods)
+        plan = self._optimiser.plan(state, self._sent.newest_nm, torque_ref_nm)
+        if plan.status is SolveStatus.FAILED:
+            self._optimiser.reset()  # what failed is no warm start
+            return Proposal(torque_ref_nm, plan.status, plan.iterations)
+        torque_nm = clamp(float(plan.inputs[0]), torque_ref_nm)
+        self._integral.advance(wheel.slip_ratio, torque_nm, torque_ref_nm)
+        return Proposal(torque_nm, plan.status, plan.iterations)

@@ -1,0 +1,27 @@
+"""The driveline as the default laws believe it to be: motor lag, gear and half-shaft, tyre lag."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+
+from tcs_hil.model.vehicle import Positive
+
+
+class Driveline(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One motor, its gear and its half-shaft, seen from the wheel.
+
+    ``motor_inertia_kgm2`` is the motor's 0.03 times the gear ratio squared; both
+    inertias together are the 1.22 of the paper's rigid wheel.  ``motor_lag_s`` is
+    the time constant from commanded to air-gap torque, ``tyre_relaxation_m`` the
+    way a tyre rolls until its force has followed its slip: shorter than a real
+    one's, because belief in a slow tyre makes the law shy of torque at low speed.
+    """
+
+    wheel_inertia_kgm2: Positive = 0.95
+    motor_inertia_kgm2: Positive = 0.27
+    shaft_stiffness_nmprad: Positive = 6000.0
+    shaft_damping_nmsprad: Annotated[float, msgspec.Meta(ge=0.0)] = 25.0
+    motor_lag_s: Annotated[float, msgspec.Meta(ge=0.001)] = 0.005
+    tyre_relaxation_m: Annotated[float, msgspec.Meta(ge=0.05)] = 0.05

@@ -1,0 +1,116 @@
+"""The default nonlinear MPC: delay, driveline and an offset-free tyre force in its model."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tcs_hil.control.compensated import CompensatedController
+from tcs_hil.control.driveline_transcription import NX, advance_function, plan_function
+from tcs_hil.control.force_disturbance import ForceDisturbance
+from tcs_hil.control.integrator import BoundedIntegral
+from tcs_hil.control.least_squares import Linearisation
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.protocol import WheelState
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.control.sqp import minimise
+from tcs_hil.model.vehicle import Vehicle
+
+FloatArray = NDArray[np.float64]
+
+SLOWEST_MPS = 0.2
+
+
+class DrivelineOptimiser:
+    """Gauss-Newton SQP, warm from the last plan, shifted by the period that has passed."""
+
+    def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
+        self._vehicle = vehicle
+        self._driveline = settings.default.driveline
+        self._tuning = settings.default.nmpc
+        self._period_s = settings.period_s
+        self._problem = Linearisation(plan_function(settings, vehicle))
+        self._flow = Flow(advance_function(settings, vehicle))
+        self._disturbance = ForceDisturbance(settings, vehicle)
+        self._guess = np.zeros(len(self._tuning.blocks))  # (N,), Nm
+
+    def state(self, wheel: WheelState, integral_s: float) -> FloatArray:
+        """State x (7,) at the instant ``wheel`` describes."""
+        force_n = self._disturbance.update(wheel)
+        gear, shaft_nm = self._vehicle.gear_ratio, force_n * self._vehicle.wheel_radius_m
+        steady_twist_rad = shaft_nm / self._driveline.shaft_stiffness_nmprad
+        return np.array(
+            (
+                wheel.slip_speed_mps,
+                wheel.wheel_speed_radps,
+                integral_s,
+                _or_else(wheel.motor_torque_nm, shaft_nm / gear),
+                wheel.motor_speed_radps / gear,
+                _or_else(wheel.shaft_twist_rad, steady_twist_rad),
+                force_n,
+            )
+        )
+
+    def advance(self, state: FloatArray, torque_nm: float, periods: float) -> FloatArray:
+        """State (7,) after ``periods`` periods of a commanded motor torque."""
+        duration_s = periods * self._period_s
+        return self._flow.after(state, torque_nm, duration_s, self._disturbance.value_n)
+
+    def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+        """Best torques (N,) in Nm within [0, torque_ref_nm]."""
+        disturbance_n, urgency = self._disturbance.value_n, self._urgency(state)
+        self._problem.start_from(state, torque_ref_nm, last_torque_nm, disturbance_n, urgency)
+        feasible = np.minimum(self._guess, torque_ref_nm)
+        plan = minimise(self._problem, feasible, torque_ref_nm, self._tuning.max_iterations)
+        self._guess = np.append(plan.inputs[1:], plan.inputs[-1])
+        return plan
+
+    def _urgency(self, state: FloatArray) -> float:
+        """Factor on the slip's residuals: 1, less below the soft speed, where slip is touchy."""
+        slip_speed_mps, omega_radps = state[:2].tolist()
+        speed_mps: float = omega_radps * self._vehicle.wheel_radius_m - slip_speed_mps
+        return min(max(speed_mps, SLOWEST_MPS) / self._tuning.soft_speed_mps, 1.0)
+
+    def reset(self) -> None:
+        """Forget the last plan and the disturbance."""
+        self._guess = np.zeros_like(self._guess)
+        self._disturbance.reset()
+
+
+def _or_else(value: float, steady: float) -> float:
+    """What no sensor says is taken from the steady state."""
+    return value if math.isfinite(value) else steady
+
+
+class Flow:
+    """The prediction model on preallocated memory."""
+
+    def __init__(self, function: Any) -> None:
+        self._x, self._parameters, self._after = np.zeros(NX), np.zeros(3), np.zeros(NX)
+        self._buffer, self._evaluate = function.buffer()
+        self._buffer.set_arg(0, self._x.data)
+        self._buffer.set_arg(1, self._parameters.data)
+        self._buffer.set_res(0, self._after.data)
+
+    def after(
+        self, state: FloatArray, torque_nm: float, duration_s: float, disturbance_n: float
+    ) -> FloatArray:
+        """State (7,) after a duration; valid until the next call."""
+        self._x[:] = state
+        self._parameters[:] = torque_nm, duration_s, disturbance_n
+        self._evaluate()
+        return self._after
+
+
+def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedController:
+    """One wheel's default NMPC; the first call builds CasADi's functions."""
+    return CompensatedController(
+        DrivelineOptimiser(settings, vehicle),
+        BoundedIntegral(
+            settings.slip_reference, settings.period_s, settings.default.integral_limit_s
+        ),
+        settings.period_s,
+    )

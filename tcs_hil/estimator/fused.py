@@ -1,0 +1,82 @@
+"""The default estimator: every sensor of the bus where it is best."""
+
+from __future__ import annotations
+
+import math
+
+from tcs_hil.control.protocol import WheelState
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.estimator.body_speed import BodySpeed
+from tcs_hil.estimator.estimate import Estimate
+from tcs_hil.estimator.loop_delay import LoopDelay
+from tcs_hil.estimator.side import Side
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import FourWheels, Measurement, Pair, RoadEstimate
+
+MOTOR_PATIENCE_S = 0.005
+"""A motor state older than two cycles is no measurement; the wheel's own sensor serves."""
+
+
+class FusedEstimator:
+    """Body speed from rear wheels and accelerometer, front wheels through their motors.
+
+    As in the plain estimator, a wheel whose validity flag is down keeps its last
+    good speed.  Without an accelerometer the tyres' forces stand in for it.
+    """
+
+    def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
+        self._vehicle = vehicle
+        driveline = settings.default.driveline
+        self._body = BodySpeed(settings.period_s)
+        self._left, self._right = (Side(driveline, vehicle, settings.period_s) for _ in range(2))
+        self._delay = LoopDelay(settings.default.delay, driveline.motor_lag_s, settings.period_s)
+        self._wheel_speed_radps: FourWheels = (0.0, 0.0, 0.0, 0.0)
+        self.newest = Estimate(0.0, (WheelState.at_rest(), WheelState.at_rest()))
+
+    def update(self, measurement: Measurement) -> Estimate:
+        """Estimate speeds, slip, shaft twist, tyre force, friction and delay."""
+        self._hold_invalid(measurement)
+        delay_s = self._delay.heard(measurement.motor_torque_nm)
+        speed_mps = self._body_speed_mps(measurement)
+        wheels = (
+            self._wheel(self._left, 0, measurement, speed_mps, delay_s),
+            self._wheel(self._right, 1, measurement, speed_mps, delay_s),
+        )
+        left, right = self._left.friction, self._right.friction
+        road = RoadEstimate(
+            friction_ratio=(left.value_ratio, right.value_ratio),
+            confidence_ratio=(left.confidence_ratio, right.confidence_ratio),
+            loop_delay_s=delay_s,
+        )
+        self.newest = Estimate(speed_mps, wheels, road)
+        return self.newest
+
+    def sent(self, torque_nm: Pair, request_nm: Pair) -> None:
+        """Hear, at the tick's end, what each motor may give of what the driver asks of it."""
+        self._delay.sent(torque_nm, request_nm)
+
+    def _hold_invalid(self, m: Measurement) -> None:
+        fl, fr, rl, rr = (
+            speed if valid else last
+            for speed, valid, last in zip(
+                m.wheel_speed_radps, m.wheel_speed_valid, self._wheel_speed_radps, strict=True
+            )
+        )
+        self._wheel_speed_radps = (fl, fr, rl, rr)
+
+    def _body_speed_mps(self, m: Measurement) -> float:
+        accel_mps2 = m.accel_x_mps2
+        if not math.isfinite(accel_mps2):
+            accel_mps2 = (self._left.force_n + self._right.force_n) / self._vehicle.mass_kg
+        radius_m = self._vehicle.wheel_radius_m
+        _, _, left_radps, right_radps = self._wheel_speed_radps
+        rear_mps = (left_radps * radius_m, right_radps * radius_m)
+        return self._body.update(rear_mps, m.wheel_speed_valid[2:], accel_mps2)
+
+    def _wheel(
+        self, side: Side, index: int, m: Measurement, body_mps: float, delay_s: float
+    ) -> WheelState:
+        if m.motor_age_s > MOTOR_PATIENCE_S:
+            return side.without_motor(self._wheel_speed_radps[index], body_mps, delay_s)
+        motor_radps, motor_nm = m.motor_speed_radps[index], m.motor_torque_nm[index]
+        return side.through_motor(motor_radps, motor_nm, body_mps, delay_s)

@@ -1,0 +1,139 @@
+"""Recorded drives for identification: a log of this service's bus, or a CSV."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import can
+import numpy as np
+from can.io.blf import BLFParseError
+from numpy.typing import NDArray
+
+from tcs_hil.canbus.database import Database, load_database
+from tcs_hil.canbus.tcs_node import TcsNode
+from tcs_hil.canbus.vehicle_node import VehicleNode
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.errors import ConfigError
+from tcs_hil.estimator.fused import FusedEstimator
+from tcs_hil.model.excitation import Runs
+from tcs_hil.model.observables import Sample
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import Pair
+
+FloatArray = NDArray[np.float64]
+
+UNREADABLE = (ValueError, NotImplementedError, can.CanError, BLFParseError, struct.error)
+"""What python-can raises for a file of an unknown or damaged format."""
+
+NS_PER_S = 1e9
+CSV_COLUMNS = (
+    "speed_mps",
+    "wheel_speed_radps",
+    "motor_speed_radps",
+    "motor_torque_nm",
+    "command_nm",
+)
+"""Of one driven wheel, a row per period; the command is the one acting from that row on."""
+
+
+class _Tick(NamedTuple):
+    """One tick of the service, both wheels: rows of a `Sample`, speed, command sent, delay."""
+
+    sample: FloatArray  # (4, 2)
+    speed_mps: float
+    command_nm: Pair
+    delay_s: float
+
+
+def read_drive(path: Path, settings: ControlSettings, vehicle: Vehicle) -> Runs:
+    """The driven wheels of one recording, estimated as the service does.
+
+    By suffix: ``.csv`` with `CSV_COLUMNS`, else a log python-can reads (``.blf``,
+    ``.asc``, candump's ``.log``; ``.mf4`` where asammdf is installed).
+
+    Raises:
+        ConfigError: the file cannot be read or holds no drive; it is named.
+    """
+    if path.suffix == ".csv":
+        return _read_csv(path, vehicle)
+    ticks = list(_ticks(path, settings, vehicle))
+    if len(ticks) < 2:
+        raise ConfigError(f"{path}: holds no drive of this service's bus")
+    return _aligned(ticks, settings.period_s)
+
+
+def _ticks(path: Path, settings: ControlSettings, vehicle: Vehicle) -> Iterator[_Tick]:
+    """What the service knew and sent, tick by tick: the newest rear speeds complete a cycle."""
+    database = load_database()
+    service, car = TcsNode(database), VehicleNode(database)
+    estimator = FusedEstimator(settings, vehicle)
+    last_id = database.messages["WheelSpeedsRear"].frame_id
+    for message in _frames(path, database):
+        stamp_ns = round(message.timestamp * NS_PER_S)
+        car.feed(message.arbitration_id, bytes(message.data), stamp_ns)
+        good = service.feed(message.arbitration_id, bytes(message.data), stamp_ns)
+        if not (good and message.arbitration_id == last_id):
+            continue
+        measurement = service.measurement(stamp_ns)
+        request_nm = measurement.driver_torque_nm
+        command_nm = (min(request_nm[0], car.limits[0]), min(request_nm[1], car.limits[1]))
+        estimator.sent(command_nm, request_nm)
+        estimate = estimator.update(measurement)
+        rows = [
+            (
+                wheel.slip_speed_mps,
+                wheel.wheel_speed_radps,
+                wheel.motor_speed_radps / vehicle.gear_ratio,
+                wheel.motor_torque_nm,
+            )
+            for wheel in estimate.wheels
+        ]
+        delay_s = estimate.wheels[0].loop_delay_s
+        yield _Tick(np.array(rows).T, estimate.vehicle_speed_mps, command_nm, delay_s)
+
+
+def _aligned(ticks: list[_Tick], period_s: float) -> Runs:
+    """Columns over time, each command moved to the period from which on it acts.
+
+    At a tick the newest limits on the bus are those of the tick before.
+    """
+    delay = max(round(ticks[-1].delay_s / period_s) - 1, 0)
+    samples = np.stack([tick.sample for tick in ticks])  # (T, 4, 2)
+    commands = np.array([tick.command_nm for tick in ticks])  # (T, 2)
+    speed = np.repeat([[tick.speed_mps] for tick in ticks], 2, axis=1)
+    first = samples[delay:]
+    acting = commands[: len(commands) - delay]
+    columns = (first[:, index] for index in range(first.shape[1]))
+    return Runs(Sample(*columns), speed[delay:], acting[:-1])
+
+
+def _frames(path: Path, database: Database) -> Iterator[can.Message]:
+    known = {message.frame_id for message in database.messages.values()}
+    try:
+        with can.LogReader(str(path)) as reader:
+            for message in reader:
+                if message.arbitration_id in known and not message.is_error_frame:
+                    yield message
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except UNREADABLE as error:
+        raise ConfigError(f"{path}: no recording python-can can read here ({error})") from error
+
+
+def _read_csv(path: Path, vehicle: Vehicle) -> Runs:
+    try:
+        with path.open(encoding="utf-8") as file:
+            names = file.readline().strip().split(",")
+            rows = np.loadtxt(file, delimiter=",", ndmin=2)
+    except (OSError, ValueError) as error:
+        raise ConfigError(f"{path}: cannot be read as CSV ({error})") from error
+    missing = [name for name in CSV_COLUMNS if name not in names]
+    if missing or len(rows) < 2 or rows.shape[1] != len(names):
+        raise ConfigError(f"{path}: needs two rows and the columns {', '.join(CSV_COLUMNS)}")
+    speed, omega, motor, torque, command = (rows[:, [names.index(name)]] for name in CSV_COLUMNS)
+    slip_speed = omega * vehicle.wheel_radius_m - speed
+    sample = Sample(slip_speed, omega, motor / vehicle.gear_ratio, torque)
+    return Runs(sample, speed, command[:-1])

@@ -1,0 +1,136 @@
+"""The default Koopman MPC: its program against plain least squares, and its loop."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+from scipy.optimize import lsq_linear
+
+from tcs_hil.control.bank_kmpc import BankOptimiser
+from tcs_hil.control.bank_law import bank_mpc
+from tcs_hil.control.bank_problem import INTEGRAL, band_problems
+from tcs_hil.control.protocol import Controller, SolveStatus
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.errors import ConfigError
+from tcs_hil.model.bank import KoopmanBank, default_bank_path
+from tcs_hil.model.fleet import FleetSettings
+from tcs_hil.model.observables import Observable
+from tests.control.believed_car import chatter_nm, drive, nominal
+from tests.control.recorder import wheel_at
+
+SETTINGS = ControlSettings()
+BANK = KoopmanBank.load(default_bank_path(), SETTINGS.period_s)
+AGREEMENT_NM = 0.03  # the bus tells 0.05 Nm apart
+
+
+@pytest.fixture
+def law() -> Controller:
+    return bank_mpc(SETTINGS, BANK)
+
+
+def reference_plan(band: int, x: np.ndarray, last_nm: float, torque_ref_nm: float) -> np.ndarray:
+    """Optimal torques (N,) in Nm by rolling the band out; no condensing, no Hessian."""
+    tuning = SETTINGS.default.kmpc
+    system = band_problems(BANK, SETTINGS)[0][band]
+    soft = min(1.0, BANK.centre_mps[band] / tuning.soft_speed_mps)
+
+    def residuals(torques: np.ndarray) -> np.ndarray:
+        state, previous, terms = x, last_nm, []
+        for u in torques:
+            state = system.a @ state + system.b[:, 0] * u
+            error = state[Observable.SLIP_RATIO] - SETTINGS.slip_reference * state[Observable.ONE]
+            terms += [soft * tuning.weight_slip**0.5 * error]
+            terms += [soft * tuning.weight_integral**0.5 * state[INTEGRAL]]
+            terms += [tuning.weight_reduction**0.5 * (torque_ref_nm - u)]
+            terms += [tuning.weight_change**0.5 * (u - previous)]
+            previous = u
+        return np.array(terms)
+
+    constant = residuals(np.zeros(tuning.horizon))
+    slopes = np.column_stack([residuals(unit) - constant for unit in np.eye(tuning.horizon)])
+    return lsq_linear(slopes, -constant, (0.0, torque_ref_nm), method="bvls", tol=1e-15).x
+
+
+@pytest.mark.parametrize("band", [0, 4, 9])
+def test_the_plan_of_a_band_is_the_exact_minimiser(band: int) -> None:
+    _, problems = band_problems(BANK, SETTINGS)
+    optimiser = BankOptimiser(SETTINGS, BANK)
+    rng = np.random.default_rng(11)
+    for _ in range(20):
+        speed_mps, kappa = BANK.centre_mps[band], rng.uniform(0.0, 0.3)
+        x = optimiser.state(wheel_at(speed_mps, kappa, 120.0), rng.uniform(-0.01, 0.01))
+        plan = problems[band].solve(x, 120.0, 200.0)
+        assert plan.status is SolveStatus.OK
+        expected = reference_plan(band, x, 120.0, 200.0)
+        assert np.abs(plan.inputs - expected).max() < AGREEMENT_NM
+
+
+@pytest.mark.parametrize("border", [1.0978, 3.4435, 7.0])
+def test_the_command_is_continuous_in_speed(border: float) -> None:
+    def first(speed_mps: float) -> float:
+        law = bank_mpc(SETTINGS, BANK)
+        return [law.step(wheel_at(speed_mps, 0.08, 100.0), 150.0).torque_nm for _ in range(5)][-1]
+
+    assert abs(first(border * 1.0001) - first(border * 0.9999)) < 0.05
+
+
+@pytest.mark.parametrize(("speed_mps", "peak"), [(1.0, 0.13), (6.0, 0.13), (25.0, 0.18)])
+def test_behind_delay_and_driveline_the_slip_settles_at_its_reference(
+    law: Controller, speed_mps: float, peak: float
+) -> None:
+    loop = drive(law, 2.0, speed_mps)
+    assert loop.slip.max() < peak
+    assert np.abs(loop.slip[-250:] - 0.1).max() < 0.005
+    assert chatter_nm(loop, after_s=1.0) < 0.1
+
+
+@pytest.mark.parametrize("delay", [2, 4])
+def test_a_delay_wrong_by_a_period_degrades_but_does_not_destabilise(
+    law: Controller, delay: int
+) -> None:
+    loop = drive(law, 2.0, delay=delay, believed_delay=3)
+    assert loop.slip.max() < 0.15
+    assert np.abs(loop.slip[-250:] - 0.1).max() < 0.005
+
+
+@pytest.mark.parametrize(
+    "car",
+    [
+        nominal(shaft_stiffness_nmprad=(8999.0, 9001.0), shaft_damping_nmsprad=(8.0, 8.1)),
+        nominal(shaft_stiffness_nmprad=(3000.0, 3001.0), shaft_damping_nmsprad=(8.0, 8.1)),
+        nominal(motor_lag_s=(0.0199, 0.02)),
+        nominal(mass_share=(0.8, 0.801)),
+    ],
+    ids=["stiff shaft", "soft shaft", "slow motor", "light car"],
+)
+def test_another_car_is_held_too(law: Controller, car: FleetSettings) -> None:
+    loop = drive(law, 2.0, fleet=car)
+    assert loop.slip.max() < 0.16
+    assert np.abs(loop.slip[-250:] - 0.1).max() < 0.01
+
+
+@pytest.mark.parametrize("grip", [0.5, 1.5])
+def test_another_road_leaves_no_offset(law: Controller, grip: float) -> None:
+    loop = drive(law, 2.5, grip=lambda time_s: 1.0 if time_s < 1.0 else grip)
+    assert loop.slip.max() < 0.28
+    assert np.abs(loop.slip[-100:] - 0.1).max() < 0.01
+
+
+def test_after_a_reset_a_run_repeats_itself_bit_for_bit(law: Controller) -> None:
+    first = drive(law, 0.6).proposed_nm
+    law.reset()
+    assert (drive(law, 0.6).proposed_nm == first).all()
+
+
+def test_a_bank_for_another_period_is_refused() -> None:
+    with pytest.raises(ConfigError, match=r"period_s is 0\.004, but the bank is for 0\.002"):
+        bank_mpc(replace(SETTINGS, period_s=0.004), BANK)
+
+
+@pytest.mark.parametrize("request_nm", [0.0, 40.0, 200.0])
+def test_a_proposal_lies_between_zero_and_the_request(law: Controller, request_nm: float) -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(100):
+        wheel = wheel_at(rng.uniform(0.0, 60.0), rng.uniform(-0.2, 0.98), 100.0)
+        assert 0.0 <= law.step(wheel, request_nm).torque_nm <= request_nm

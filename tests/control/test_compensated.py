@@ -1,0 +1,89 @@
+"""What both default laws do around their optimiser."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tcs_hil.control.compensated import CompensatedController
+from tcs_hil.control.integrator import BoundedIntegral
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
+from tests.control.recorder import wheel_at
+
+SPINNING = wheel_at(5.0, 0.3)
+
+
+class Scripted:
+    """An optimiser whose state is what it was advanced by; it plans from a list."""
+
+    def __init__(self, *torques_nm: float) -> None:
+        self._torques_nm = list(torques_nm)
+        self.asked: list[tuple[list[float], float, float]] = []
+        self.integrals: list[float] = []
+        self.status = SolveStatus.OK
+        self.resets = 0
+
+    def state(self, wheel: WheelState, integral_s: float) -> np.ndarray:
+        self.integrals.append(integral_s)
+        return np.zeros(0)
+
+    def advance(self, state: np.ndarray, torque_nm: float, periods: float) -> np.ndarray:
+        return np.append(state, torque_nm * periods)
+
+    def plan(self, state: np.ndarray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+        self.asked.append((state.tolist(), last_torque_nm, torque_ref_nm))
+        return Plan(np.array([self._torques_nm.pop(0), 0.0]), self.status, 2)
+
+    def reset(self) -> None:
+        self.resets += 1
+
+
+def control(optimiser: Scripted) -> CompensatedController:
+    return CompensatedController(optimiser, BoundedIntegral(0.1, 0.002, 0.02), 0.002)
+
+
+def test_it_plans_from_the_state_behind_the_torques_under_way() -> None:
+    optimiser = Scripted(80.0, 70.0, 60.0)
+    controller = control(optimiser)
+    late = replace(SPINNING, loop_delay_s=0.003)
+    for _ in range(3):
+        controller.step(late, 200.0)
+    assert optimiser.asked[2] == ([0.5 * 80.0, 70.0], 70.0, 200.0)
+
+
+def test_the_first_torque_of_the_plan_is_proposed_within_the_request() -> None:
+    controller = control(Scripted(80.0, 200.0 + 1e-7))
+    assert controller.step(SPINNING, 200.0) == Proposal(80.0, iterations=2)
+    assert controller.step(SPINNING, 200.0).torque_nm == 200.0
+
+
+def test_a_failed_solve_leaves_the_request_and_is_remembered_as_sent() -> None:
+    optimiser = Scripted(np.nan, 80.0)
+    optimiser.status = SolveStatus.FAILED
+    controller = control(optimiser)
+    assert controller.step(SPINNING, 200.0) == Proposal(200.0, SolveStatus.FAILED, 2)
+    assert optimiser.resets == 1
+    controller.step(SPINNING, 200.0)
+    assert optimiser.asked[1][1] == 200.0
+
+
+def test_what_needs_no_solve_is_remembered_as_sent_too() -> None:
+    optimiser = Scripted(80.0, 80.0)
+    controller = control(optimiser)
+    controller.step(SPINNING, 200.0)
+    assert controller.step(SPINNING, 0.0) == Proposal(0.0)
+    controller.step(SPINNING, 200.0)
+    assert optimiser.asked[1][1] == 0.0
+
+
+def test_the_integral_reaches_the_next_solve_and_reset_clears_everything() -> None:
+    optimiser = Scripted(80.0, 80.0, 80.0)
+    controller = control(optimiser)
+    controller.step(SPINNING, 200.0)
+    controller.step(SPINNING, 200.0)
+    controller.reset()
+    controller.step(SPINNING, 200.0)
+    assert optimiser.integrals == [0.0, 0.002 * (0.1 - SPINNING.slip_ratio), 0.0]
+    assert optimiser.asked[2][1] == 0.0

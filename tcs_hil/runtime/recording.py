@@ -18,6 +18,7 @@ LAYOUT_VERSION = 1
 PREAMBLE = struct.Struct("<8sIIQQ")
 """Magic, layout version, size of the JSON header, offset of the ring, capacity in records."""
 COUNT_OFFSET = PREAMBLE.size  # u64: records written since the start, raised after each of them
+COUNT_MAX = 1 << 48  # seventeen thousand years of ticks
 HEADER_OFFSET = COUNT_OFFSET + 8
 
 
@@ -120,9 +121,12 @@ def _layout(path: Path, view: mmap.mmap) -> tuple[Header, int, int]:
         raise RecordingError(f"{path}: layout version {version} is not {LAYOUT_VERSION}")
     text = view[HEADER_OFFSET : HEADER_OFFSET + header_size]
     try:
-        return msgspec.json.decode(text, type=Header), start, capacity
-    except msgspec.DecodeError as error:
+        header = msgspec.json.decode(text, type=Header)
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise RecordingError(f"{path}: the header is damaged: {error}") from error
+    if capacity < 1 or _count(view) > COUNT_MAX:
+        raise RecordingError(f"{path}: the header is damaged")
+    return header, start, capacity
 
 
 def _count(view: mmap.mmap) -> int:

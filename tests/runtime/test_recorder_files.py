@@ -1,12 +1,13 @@
 """What the recorder may do to files that are already there."""
 
+import contextlib
 import os
 from pathlib import Path
 
 import pytest
 
 from tcs_hil.runtime.recorder import FlightRecorder
-from tcs_hil.runtime.recording import RecordingError, RunInfo
+from tcs_hil.runtime.recording import RecordingError, RunInfo, read
 
 INFO = RunInfo(
     period_ns=2_000_000,
@@ -53,3 +54,13 @@ def test_a_path_below_a_file_is_refused_in_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(RecordingError, match="Not a directory"):
         FlightRecorder(tmp_path / "file" / "flight.tcsrec", INFO, 10)
+
+
+def test_whatever_byte_of_the_header_is_damaged_it_is_at_most_refused(tmp_path: Path) -> None:
+    path = tmp_path / "flight.tcsrec"
+    FlightRecorder(path, INFO, 3).close()
+    whole = path.read_bytes()
+    for position in range(0, 600):
+        path.write_bytes(whole[:position] + b"\xb0" + whole[position + 1 :])
+        with contextlib.suppress(RecordingError):  # anything else would end the test
+            read(path)

@@ -56,13 +56,13 @@ class BandProblem:
     """Quadratic program over the torques U within [0, T_ref], in physical units.
 
     Minimised is the sum of w_p (kappa - kappa_ref)² + w_i e_int² + w_u (T_ref - u)²
-    + w_du (u_k - u_{k-1})².  ``softness`` scales the two weights on outputs.
+    + w_du (u_k - u_{k-1})²; ``output_weights`` are those at the band's centre.
     """
 
-    def __init__(self, system: LinearSystem, tuning: BankKmpcSettings, softness: float) -> None:
+    def __init__(self, system: LinearSystem, tuning: BankKmpcSettings, centre_mps: float) -> None:
         n = tuning.horizon
         dense = condense(system, n)
-        weights = softness * np.tile((tuning.weight_slip, tuning.weight_integral), n)
+        weights = np.tile(output_weights(tuning, centre_mps), n)
         pull = 2.0 * dense.theta.T * weights  # (N, 2 N)
         change = np.eye(n) - np.eye(n, k=-1)
         on_torques = tuning.weight_reduction * np.eye(n) + tuning.weight_change * change.T @ change
@@ -97,7 +97,19 @@ def band_problems(
     systems = [
         extend_band(bank, band, settings.slip_reference) for band in range(len(bank.centre_mps))
     ]
-    softness = [min(1.0, centre / tuning.soft_speed_mps) ** 2 for centre in bank.centre_mps]
     return systems, [
-        BandProblem(system, tuning, soft) for system, soft in zip(systems, softness, strict=True)
+        BandProblem(system, tuning, centre)
+        for system, centre in zip(systems, bank.centre_mps, strict=True)
     ]
+
+
+def output_weights(tuning: BankKmpcSettings, speed_mps: float) -> tuple[float, float]:
+    """Weights (w_p, w_i) on the slip error and its integral at a vehicle speed.
+
+    Both fall with the square of the speed below ``soft_speed_mps``, where slip
+    answers torque so fast.  Above ``integral_speed_mps`` slip answers slowly, and
+    an integral as quick as at low speed would swing with it: w_i falls again.
+    """
+    soft = min(1.0, speed_mps / tuning.soft_speed_mps) ** 2
+    slow = min(1.0, tuning.integral_speed_mps / speed_mps) ** 2
+    return soft * tuning.weight_slip, soft * slow * tuning.weight_integral

@@ -83,7 +83,7 @@ class BankKmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     online_update: bool = False  # of the predictor, by the grip observed
     soft_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 4.0
     """Below it slip answers torque so fast that its weights shrink with the speed squared."""
-    integral_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 8.0
+    integral_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 10.0
     """Above it the integral's weight shrinks with the speed squared: slip answers slowly there."""
 
 

@@ -27,11 +27,12 @@ mount -t cgroup2 cgroup2 /sys/fs/cgroup
 exec env container=uml {SYSTEMD} --system --unit=bare.target --log-target=null --show-status=no
 """
 BARE_TARGET = "[Unit]\nDefaultDependencies=no\n"
-# Without a distribution's basic.target; and Python, or this checkout, may live in somebody's home.
+# Without a distribution's basic.target; Python or this checkout may live in a home or in /tmp.
 DROP_IN = """[Unit]
 DefaultDependencies=no
 [Service]
 ProtectHome=no
+BindReadOnlyPaths={checkout} {environment}
 StandardOutput=append:/run/{unit}.log
 StandardError=append:/run/{unit}.log
 """
@@ -49,7 +50,9 @@ def install(*units: str) -> None:
     for unit in units:
         folder = UNITS / f"{unit}.service.d"
         folder.mkdir()
-        (folder / "test.conf").write_text(DROP_IN.format(unit=unit), encoding="utf-8")
+        (folder / "test.conf").write_text(
+            DROP_IN.format(unit=unit, checkout=PROJECT, environment=sys.prefix), encoding="utf-8"
+        )
     for path in (Path(sys.executable).resolve(), PROJECT):
         for parent in path.parents:
             parent.chmod(parent.stat().st_mode | 0o011)

@@ -88,7 +88,7 @@ class _Nowhere:
 def emulating() -> Callable[[], object]:
     """One tick with codec, end-to-end protection and the emulated wire."""
     scenario = load_scenario("manoeuvre-1").with_variant("vehicle")
-    node, recorder = VehicleNode(load_database()), TruthRecorder(None, scenario, PERIOD_S)
+    node, recorder = VehicleNode(load_database()), TruthRecorder(None, scenario)
     emulator = Emulator(Plant(scenario), node, _Nowhere(), recorder)
     now_ns = 0
 

@@ -135,6 +135,26 @@ def half_shaft() -> Figure:
     return figure
 
 
+def steady_acceleration() -> Figure:
+    """A steady push on a dry road against torque over all that moves, less resistance."""
+    figure, (accel, error) = _canvas(2, "Steady acceleration on a dry road, from rest")
+    spinning_kg = (4 * WHEEL_KGM2 + 2 * GEAR**2 * MOTOR_KGM2) / RADIUS_M**2
+    for torque_nm in (50.0, 100.0, 150.0):
+        rows = drive(plant([(0.0, torque_nm)]), 4.0)
+        time_s = rows["time_s"]
+        resisted_n = 0.01 * MASS_KG * GRAVITY_MPS2 + 0.39 * rows["speed_mps"] ** 2
+        by_hand = (2 * GEAR * torque_nm / RADIUS_M - resisted_n) / (MASS_KG + spinning_kg)
+        accel.plot(time_s, rows["accel_mps2"], label=f"{torque_nm:g} Nm per motor")
+        accel.plot(time_s, by_hand, **PEER)
+        settled = time_s > 1.5
+        error.plot(time_s[settled], 100.0 * (rows["accel_mps2"] / by_hand - 1.0)[settled])
+    accel.plot([], [], **PEER, label="by hand")
+    accel.set(ylabel="acceleration in m/s2", ylim=(-0.1, 3.4))
+    accel.legend(fontsize=8, loc="upper right")
+    error.set(xlabel="time in s", ylabel="difference in %", xlim=accel.get_xlim())
+    return figure
+
+
 def load_transfer() -> Figure:
     """Load on the front axle against m a h / L while the driver plays with the throttle."""
     figure, (pitch, load) = _canvas(2, "Load transfer on a dry road")
@@ -268,6 +288,7 @@ PICTURES: Mapping[str, Callable[[], Figure]] = {
     "quarter-car": quarter_car,
     "tyre-curves": tyre_curves,
     "half-shaft": half_shaft,
+    "steady-acceleration": steady_acceleration,
     "load-transfer": load_transfer,
     "energy": energy,
     "convergence": convergence,

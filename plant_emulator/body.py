@@ -46,6 +46,13 @@ class Body(Table, frozen=True):
     hold_damping_nmsprad: NonNegative = 1500.0
     load_transfer: bool = True
 
+    def __post_init__(self) -> None:
+        """Refuse a car lighter than its wheels, or one that would tip over standing still."""
+        if self.mass_kg <= 4.0 * self.unsprung_mass_kg:
+            raise ValueError("`mass_kg` must be greater than four times `unsprung_mass_kg`")
+        if self.cg_behind_front_axle_m >= self.wheelbase_m:
+            raise ValueError("`cg_behind_front_axle_m` must be less than `wheelbase_m`")
+
 
 class Sprung(NamedTuple):
     """The sprung mass and where its centre of gravity is."""

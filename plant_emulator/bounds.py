@@ -7,8 +7,14 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-Positive = Annotated[float, Meta(gt=0.0)]
-NonNegative = Annotated[float, Meta(ge=0.0)]
+MOST = 1e9
+"""More than any quantity of a car; without it infinity and not-a-number would pass."""
+
+TEETH_MAX = 200
+
+Positive = Annotated[float, Meta(gt=0.0, le=MOST)]
+NonNegative = Annotated[float, Meta(ge=0.0, le=MOST)]
+Finite = Annotated[float, Meta(ge=-MOST, le=MOST)]
 Ratio = Annotated[float, Meta(ge=0.0, le=1.0)]
 Seed = Annotated[int, Meta(ge=0, lt=2**32)]
 

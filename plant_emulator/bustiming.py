@@ -1,7 +1,9 @@
 """The bus vcan has not: frames take time, wait for each other and get lost.
 
 A simulation of one classic CAN segment: frames queue at their nodes, the lowest
-identifier wins whenever the bus is free, every bit takes its time.
+identifier wins whenever the bus is free, every bit takes its time.  A node's
+controller has one mailbox per identifier: a frame that still waits when the next
+one with its identifier is queued is never sent.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from msgspec import Meta
 
-from plant_emulator.bounds import NonNegative, Ratio, Seed, Table
+from plant_emulator.bounds import Ratio, Seed, Table
 from plant_emulator.frame_bits import frame_bits
 
 BitRate = Annotated[int, Meta(ge=0, le=1_000_000)]
@@ -38,7 +40,7 @@ class BusTiming(Table, frozen=True):
     background_load: Annotated[float, Meta(ge=0.0, le=0.8)] = 0.0
     jitter_s: Annotated[float, Meta(ge=0.0, le=0.002)] = 0.0
     loss_ratio: Ratio = 0.0
-    limit_delay_s: NonNegative = 0.004
+    limit_delay_s: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.004
     answer_s: Annotated[float, Meta(ge=0.0, lt=0.002)] = 0.0017
     seed: Seed = 2
 
@@ -62,6 +64,12 @@ class BusFrame(NamedTuple):
     order: int
     data: bytes
     sender: Sender
+    mailbox: int = 0
+
+    @property
+    def place(self) -> tuple[Sender, int, int]:
+        """Where the frame waits; there is room for one."""
+        return (self.sender, self.frame_id, self.mailbox)
 
 
 class Delivery(NamedTuple):
@@ -82,17 +90,22 @@ class VirtualBus:
         self._bit_ns = 1e9 / timing.bitrate if timing.bitrate else 0.0
         self._order = 0
         self._queued: list[tuple[int, BusFrame]] = []  # by the time they are offered
-        self._ready: list[BusFrame] = []  # by identifier
+        self._ready: dict[tuple[Sender, int, int], BusFrame] = {}  # by place
         self._sent: deque[Delivery] = deque()
         self._free_ns = 0
         self._now_ns = 0
         self._stranger_ns = self._next_stranger(0.0)
         frame_bits(0, b"")  # compiles it now and not in the first tick
 
-    def offer(self, time_ns: int, frame_id: int, data: bytes, sender: Sender) -> None:
-        """Queue a frame at its node; a time that has passed counts as now."""
+    def offer(
+        self, time_ns: int, frame_id: int, data: bytes, sender: Sender, mailbox: int = 0
+    ) -> None:
+        """Queue a frame at its node; a time that has passed counts as now.
+
+        It takes the place of one that still waits in the same mailbox.
+        """
         self._order += 1
-        frame = BusFrame(frame_id, self._order, data, sender)
+        frame = BusFrame(frame_id, self._order, data, sender, mailbox)
         heapq.heappush(self._queued, (max(time_ns, self._now_ns), frame))
 
     def run_until(self, now_ns: int) -> list[Delivery]:
@@ -120,8 +133,10 @@ class VirtualBus:
     def _transmit(self, start_ns: int) -> None:
         """Let everybody who is there at ``start_ns`` arbitrate, and the winner send."""
         while self._queued and self._queued[0][0] <= start_ns:
-            heapq.heappush(self._ready, heapq.heappop(self._queued)[1])
-        winner = heapq.heappop(self._ready)
+            frame = heapq.heappop(self._queued)[1]
+            self._ready[frame.place] = frame
+        winner = min(self._ready.values())
+        del self._ready[winner.place]
         bits = frame_bits(winner.frame_id, winner.data) if self._bit_ns else 0
         self._free_ns = start_ns + round(bits * self._bit_ns)
         self._sent.append(Delivery(self._free_ns, winner))

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from plant_emulator.bounds import NonNegative, Positive, Ratio, Table
+from plant_emulator.bounds import TEETH_MAX, Finite, NonNegative, Positive, Ratio, Table
 
 Kind = Literal[
     "off",
@@ -45,6 +45,7 @@ SIGNALS = (
     "DriverTorqueRequestR",
     "VehicleAccelX",
 )
+LIMITS = ("TorqueLimitL", "TorqueLimitR")
 MESSAGES = (
     "DriverRequest",
     "MotorState",
@@ -57,7 +58,7 @@ MOTORS = ("MotorL", "MotorR")
 NODES = ("VEHICLE", "TCS")
 
 _KINDS_OF = {
-    **dict.fromkeys(SIGNALS, VALUE_KINDS),
+    **dict.fromkeys((*SIGNALS, *LIMITS), VALUE_KINDS),
     **dict.fromkeys(WHEELS, VALUE_KINDS | {"tooth-missing"}),
     **dict.fromkeys(MESSAGES, PROTECTED_KINDS),
     **dict.fromkeys(UNPROTECTED, FRAME_KINDS),
@@ -81,17 +82,17 @@ class Fault(Table, frozen=True):
     kind: Kind
     start_s: NonNegative = 0.0
     end_s: Positive | None = None
-    low: float = 0.0
-    high: float = 300.0
-    offset: float = 0.0
-    scale: float = 1.0
+    low: Finite = 0.0
+    high: Finite = 300.0
+    offset: Finite = 0.0
+    scale: Finite = 1.0
     time_constant_s: Positive = 0.1
-    delay_s: Positive = 0.02
-    period_s: Annotated[float, Meta(ge=0.0002)] = 0.02
+    delay_s: Annotated[float, Meta(gt=0.0, le=60.0)] = 0.02
+    period_s: Annotated[float, Meta(ge=0.0002, le=3600.0)] = 0.02
     duty: Ratio = 0.5
     probability: Ratio = 1.0
     bit: Annotated[int, Meta(ge=0, le=63)] | None = None
-    tooth: Annotated[int, Meta(ge=0)] = 0
+    tooth: Annotated[int, Meta(ge=0, lt=TEETH_MAX)] = 0
     frame_id: Annotated[int, Meta(ge=0, le=0x7FF)] = 0x001
 
     def __post_init__(self) -> None:
@@ -102,6 +103,8 @@ class Fault(Table, frozen=True):
             raise ValueError(f"`kind` {self.kind!r} does not exist for `target` {self.target!r}")
         if self.end <= self.start_s:
             raise ValueError("`end_s` must be greater than `start_s`")
+        if self.low > self.high:
+            raise ValueError("`low` must not be greater than `high`")
 
     @property
     def end(self) -> float:
@@ -112,12 +115,25 @@ class Fault(Table, frozen=True):
         """Whether the fault is there at ``time_s``."""
         if not self.start_s <= time_s < self.end:
             return False
+        return self.kind != "intermittent" or self._cycles(time_s) % 1.0 < self.duty
+
+    def next_edge(self, time_s: float) -> float:
+        """When it next comes or goes after ``time_s``; infinite if it does not."""
+        if time_s < self.start_s:
+            return self.start_s
+        if time_s >= self.end:
+            return math.inf
         if self.kind != "intermittent":
-            return True
-        return (time_s - self.start_s) % self.period_s < self.duty * self.period_s
+            return self.end
+        cycle, phase = divmod(self._cycles(time_s), 1.0)
+        edge = cycle + (self.duty if phase < self.duty else 1.0)
+        return min(self.start_s + edge * self.period_s, self.end)
+
+    def _cycles(self, time_s: float) -> float:
+        """Periods since the start; a rounded instant just before an edge counts as on it."""
+        return (time_s - self.start_s) / self.period_s + 1e-6
 
 
 def next_boundary(faults: Iterable[Fault], time_s: float) -> float:
-    """First start or end of any of ``faults`` after ``time_s``; infinite if there is none."""
-    edges = (edge for fault in faults for edge in (fault.start_s, fault.end))
-    return min((edge for edge in edges if edge > time_s), default=math.inf)
+    """When any of ``faults`` next comes or goes after ``time_s``; infinite if none does."""
+    return min((fault.next_edge(time_s) for fault in faults), default=math.inf)

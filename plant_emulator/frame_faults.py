@@ -15,11 +15,12 @@ from tcs_hil.canbus.e2e import COUNTER_MASK
 
 
 class TimedFrame(NamedTuple):
-    """A frame and when its node offers it to the bus, ns from the start."""
+    """A frame, when its node offers it to the bus, ns from the start, and in which mailbox."""
 
     time_ns: int
     frame_id: int
     data: bytes
+    mailbox: int = 0
 
 
 class FrameFaults:
@@ -76,7 +77,9 @@ class FrameFaults:
             return [frame._replace(data=self._flip(fault, frame.data))]
         if fault.kind == "wrong-crc":
             return [frame._replace(data=bytes([frame.data[0] ^ 0xFF]) + frame.data[1:])]
-        return [frame, frame] if fault.kind == "duplicated" else []
+        # A duplicate waits beside the first, which it must not replace.
+        twin = frame._replace(mailbox=frame.mailbox + 1)
+        return [frame, twin] if fault.kind == "duplicated" else []
 
     def _flip(self, fault: Fault, data: bytes) -> bytes:
         bits = 8 * len(data)

@@ -30,14 +30,14 @@ class Link:
             self._bus.offer(time_ns, frame_id, data, sender)
             return
         for frame in self._faults.pass_on(TimedFrame(time_ns, frame_id, data), sender):
-            self._bus.offer(*frame, sender)
+            self._bus.offer(frame.time_ns, frame.frame_id, frame.data, sender, frame.mailbox)
 
     def run_until(self, now_ns: int) -> list[Delivery]:
         """Carry the bus on to ``now_ns``; returns the frames that arrive, in order."""
         if self._faults is None:
             return self._bus.run_until(now_ns)
         for frame in self._faults.babble(self._babbled_ns, now_ns):
-            self._bus.offer(*frame, Sender.VEHICLE)
+            self._bus.offer(frame.time_ns, frame.frame_id, frame.data, Sender.VEHICLE)
         self._babbled_ns = max(now_ns, self._babbled_ns)
         return [
             delivery

@@ -11,27 +11,41 @@ from plant_emulator.inverter import Demand, demanded
 from plant_emulator.value_faults import Alteration, alteration
 from tcs_hil.signals import NO_LIMIT
 
+SAMPLE_S = 0.002
+
 
 class MotorFaults:
-    """Alters demands; also blacks out both motors while the car's electronics are down."""
+    """Alters demands; also blacks out both motors while the car's electronics are down.
+
+    A motor with a fault on its value reads what it is asked for every 2 ms and when
+    such a fault comes or goes, and holds it in between: how time is cut elsewhere
+    must not change what it does.
+    """
 
     def __init__(self, faults: tuple[Fault, ...], rng: np.random.Generator) -> None:
         self._faults = [f for f in faults if f.target in MOTORS or f.kind == "brown-out"]
         self._brown_outs = [fault for fault in faults if fault.kind == "brown-out"]
         self._runaways = [fault for fault in faults if fault.kind == "ignores-limit"]
-        self._altered: list[tuple[int, Alteration]] = [
-            (MOTORS.index(fault.target), alteration(fault, rng))
+        self._altered: list[tuple[Fault, int, Alteration]] = [
+            (fault, MOTORS.index(fault.target), alteration(fault, rng))
             for fault in faults
             if fault.target in MOTORS and fault.kind in VALUE_KINDS
         ]
+        self._sampled: tuple[int, tuple[bool, ...]] | None = None
+        self._aims = [0.0, 0.0]
 
     def dark(self, time_s: float) -> bool:
         """Whether the electronics are down: no torque, no frames."""
         return any(fault.active(time_s) for fault in self._brown_outs)
 
     def next_change(self, time_s: float) -> float:
-        """When a fault next begins or ends."""
-        return next_boundary(self._faults, time_s) if self._faults else math.inf
+        """When a fault next begins or ends, or a faulty motor reads what it is asked for."""
+        if not self._faults:
+            return math.inf
+        boundary_s = next_boundary(self._faults, time_s)
+        if not self._altered:
+            return boundary_s
+        return min(boundary_s, (_sample_at(time_s) + 1) * SAMPLE_S)
 
     def apply(self, demand: Demand, time_s: float) -> Demand:
         """What the inverters make of ``demand`` from ``time_s`` on."""
@@ -47,10 +61,28 @@ class MotorFaults:
         return self._alter(demand, time_s) if self._altered else demand
 
     def _alter(self, demand: Demand, time_s: float) -> Demand:
-        aims = list(demanded(demand, 0.0))
-        for side, alter in self._altered:
-            aims[side] = alter(aims[side], time_s) or 0.0
-        return _constant(aims[0], aims[1])
+        active = tuple(fault.active(time_s) for fault, _, _ in self._altered)
+        if self._sampled != (_sample_at(time_s), active):
+            self._sampled = (_sample_at(time_s), active)
+            self._aims = list(demanded(demand, 0.0))
+            for _, side, alter in self._altered:
+                self._aims[side] = alter(self._aims[side], time_s) or 0.0
+        for (_, side, _), there in zip(self._altered, active, strict=True):
+            if there:
+                demand = _held(demand, side, self._aims[side])
+        return demand
+
+
+def _sample_at(time_s: float) -> int:
+    """Number of the newest sample at ``time_s``; a rounded instant just before one is on it."""
+    return math.floor(time_s / SAMPLE_S + 1e-6)
+
+
+def _held(demand: Demand, side: int, aim_nm: float) -> Demand:
+    """``demand`` with a constant in the place of one side's lines."""
+    flat = _constant(aim_nm, aim_nm)
+    left, right = (flat, demand) if side == 0 else (demand, flat)
+    return Demand(*((one[0], other[1]) for one, other in zip(left, right, strict=True)))
 
 
 def _constant(left_nm: float, right_nm: float) -> Demand:

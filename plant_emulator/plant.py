@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
 import numpy as np
@@ -14,7 +15,7 @@ from plant_emulator.quarter_car import QuarterCarPlant
 from plant_emulator.road import road_table
 from plant_emulator.scenario import Scenario
 from plant_emulator.sensors import IDEAL, SensorSet
-from plant_emulator.signal_faults import SignalFaults
+from plant_emulator.signal_faults import LimitFaults, SignalFaults
 from plant_emulator.truth import DISTANCE, LIMIT, REQUEST, ROW_SIZE, TIME, Row, Truth, truth_of
 from plant_emulator.whole_car_plant import WholeCarPlant
 from tcs_hil.canbus.vehicle_node import VehicleSignals
@@ -43,15 +44,24 @@ class Plant:
         self._keeper = LimitKeeper()
         rng = np.random.default_rng([scenario.sensors.seed, 1])
         self._signal_faults = SignalFaults(scenario.fault, rng)
+        self._limit_faults = LimitFaults(scenario.fault, rng)
         self._motor_faults = MotorFaults(scenario.fault, rng)
         self.time_s = 0.0
         self._demand = self._demand_now()
         self._row: Row | None = None
 
     def step(self, limits: TorqueLimits | None, dt_s: float) -> None:
-        """Let ``dt_s`` pass; ``limits`` are those that arrived at its beginning, if any did."""
+        """Let ``dt_s`` pass; ``limits`` are those that arrived at its beginning, if any did.
+
+        No time at all just hands over the limits.
+
+        Raises:
+            ValueError: ``dt_s`` is negative or not finite.
+        """
+        if not 0.0 <= dt_s < math.inf:
+            raise ValueError(f"dt_s must be finite and not negative, not {dt_s}")
         if limits is not None:
-            self._keeper.accept(limits, self.time_s)
+            self._keeper.accept(self._limit_faults.apply(limits, self.time_s), self.time_s)
             self._demand = self._demand_now()
         self._row = None
         end_s = self.time_s + dt_s

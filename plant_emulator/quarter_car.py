@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from plant_emulator.bounds import Positive, Table
 from plant_emulator.compiled import compiled, records
 from plant_emulator.inverter import Demand, demanded
-from plant_emulator.road import MU_LEFT, MU_RIGHT, patch_at
+from plant_emulator.road import MU_LEFT, MU_RIGHT, patch_at, time_to_edge
 from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
 from plant_emulator.truth import (
     ACCEL,
@@ -35,6 +35,7 @@ from plant_emulator.truth import (
     WHEEL_SPEED,
     Row,
 )
+from tcs_hil.signals import Pair
 
 GRAVITY_MPS2 = 9.81
 
@@ -101,21 +102,38 @@ def advance(
 ) -> None:
     """Integrate with the classic Runge-Kutta method, in steps of at most 0.1 ms.
 
-    Friction is that of the patch at the beginning of a step.
+    A step ends where the car comes onto another patch of the road.
     """
-    car = cars[0]
     steps = steps_for(duration_s)
-    h = duration_s / steps
+    longest_s = duration_s / steps
     for step in range(steps):
-        patch = road[patch_at(road, state[POSITION])]
-        mu = (patch[MU_LEFT], patch[MU_RIGHT])
-        for stage in range(4):
-            offset_s = STAGES[stage] * h
-            blend(work.trial, state, offset_s, work.rates[stage - 1])
-            derivative(
-                work.trial, demanded(demand, step * h + offset_s), mu, car, work.rates[stage]
-            )
-        conclude(state, h, work.rates)
+        left_s = longest_s
+        while left_s > 0.0:
+            h = min(left_s, time_to_edge(road, state[POSITION], state[SPEED], 0.0))
+            piece = (step * longest_s + longest_s - left_s, h)
+            _step(state, demand, cars, road, piece, work)
+            left_s -= h
+
+
+@compiled
+def _step(
+    state: NDArray[np.float64],
+    demand: Demand,
+    cars: Sequence[QuarterCar],
+    road: NDArray[np.float64],
+    piece: Pair,
+    work: Work,
+) -> None:
+    """One step on the road under the car; ``piece``: when on the demand's line, how long (s)."""
+    elapsed_s, h = piece
+    patch = road[patch_at(road, state[POSITION])]
+    mu = (patch[MU_LEFT], patch[MU_RIGHT])
+    for stage in range(4):
+        offset_s = STAGES[stage] * h
+        blend(work.trial, state, offset_s, work.rates[stage - 1])
+        torque_nm = demanded(demand, elapsed_s + offset_s)
+        derivative(work.trial, torque_nm, mu, cars[0], work.rates[stage])
+    conclude(state, h, work.rates)
 
 
 class QuarterCarPlant:

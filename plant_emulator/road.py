@@ -16,6 +16,8 @@ from plant_emulator.truth import MU, Row
 Friction = Annotated[float, Meta(gt=0.0, le=1.5)]
 Grade = Annotated[float, Meta(ge=-0.2, le=0.2)]
 
+SHORTEST_S = 1e-10
+
 FROM_M, MU_LEFT, MU_RIGHT, GRADE, PEAK_ONLY = range(5)
 
 
@@ -61,6 +63,25 @@ def patch_at(road: NDArray[np.float64], position_m: float) -> int:
     while row + 1 < road.shape[0] and position_m >= road[row + 1, FROM_M]:
         row += 1
     return row
+
+
+@compiled
+def time_to_edge(
+    road: NDArray[np.float64], position_m: float, speed_mps: float, tail_m: float
+) -> float:
+    """Time until the front axle, or what follows ``tail_m`` behind it, reaches another patch, s.
+
+    At constant speed; infinite if there is none ahead, and never below 0.1 ns, so
+    that whoever steps to the edge comes past it.
+    """
+    nearest_s = math.inf
+    if road.shape[0] > 1 and speed_mps != 0.0:
+        for axle_m in (position_m, position_m - tail_m):
+            row = patch_at(road, axle_m)
+            edge = row + 1 if speed_mps > 0.0 else row
+            if 0 < edge < road.shape[0]:
+                nearest_s = min(nearest_s, (road[edge, FROM_M] - axle_m) / speed_mps)
+    return max(nearest_s, SHORTEST_S)
 
 
 class Site(NamedTuple):

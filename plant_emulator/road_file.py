@@ -21,10 +21,11 @@ def read_road(path: Path) -> tuple[Patch, ...]:
         ConfigError: the file cannot be read, has no patches, or a column or value is wrong.
     """
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = [{k: v for k, v in line.items() if v} for line in csv.DictReader(file)]
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            table = csv.DictReader(file, skipinitialspace=True)
+            lines = [{k: v for k, v in line.items() if v} for line in table]
         patches = msgspec.convert(lines, tuple[Patch, ...], strict=False)
-    except (OSError, UnicodeDecodeError, csv.Error, msgspec.ValidationError) as error:
+    except (OSError, ValueError, csv.Error, msgspec.ValidationError) as error:
         raise ConfigError(f"{path}: cannot be read as a road: {error}") from error
     if not patches:
         raise ConfigError(f"{path}: a road needs at least one patch")

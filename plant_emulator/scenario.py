@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -24,6 +25,9 @@ from plant_emulator.tyre import Tyre
 from plant_emulator.whole_car import WholeCar
 from tcs_hil.config import read_toml
 from tcs_hil.errors import ConfigError
+
+MOST_DOUBLINGS = 4
+"""Each doubles what those before it leave."""
 
 LIBRARY = Path(__file__).parent / "scenarios"
 
@@ -100,6 +104,9 @@ class Scenario(Table, frozen=True):
         """Refuse a road whose patches are not in the order of travel."""
         if any(later.from_m <= earlier.from_m for earlier, later in pairwise(self.road)):
             raise ValueError("`from_m` must increase from one `[[road]]` patch to the next")
+        doubled = Counter(fault.target for fault in self.fault if fault.kind == "duplicated")
+        if max(doubled.values(), default=0) > MOST_DOUBLINGS:
+            raise ValueError(f"at most {MOST_DOUBLINGS} faults may make one message `duplicated`")
 
     @property
     def bus_timing(self) -> BusTiming:
@@ -156,6 +163,8 @@ def _find(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
     if path.suffix == ".toml" or len(path.parts) > 1:
         return path
-    for shipped in LIBRARY.glob(f"*/{path.name}.toml"):
-        return shipped
-    raise ConfigError(f"scenario {str(name_or_path)!r} is neither a file nor one that is shipped")
+    for shipped in LIBRARY.glob("*/*.toml"):
+        if shipped.stem == str(name_or_path):
+            return shipped
+    name = str(name_or_path)[:100]
+    raise ConfigError(f"scenario {name!r} is neither a file nor one that is shipped")

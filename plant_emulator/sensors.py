@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 from msgspec import Meta
 
-from plant_emulator.bounds import NonNegative, Positive, Seed, Table
+from plant_emulator.bounds import TEETH_MAX, Finite, NonNegative, Positive, Seed, Table
 from plant_emulator.encoder import (
     Encoder,
     SpeedUnit,
@@ -28,7 +28,7 @@ from plant_emulator.truth import (
 from tcs_hil.canbus.vehicle_node import VehicleSignals
 from tcs_hil.signals import FourWheels
 
-Teeth = Annotated[int, Meta(ge=0, le=200)]
+Teeth = Annotated[int, Meta(ge=0, le=TEETH_MAX)]
 
 
 class Sensors(Table, frozen=True):
@@ -47,7 +47,7 @@ class Sensors(Table, frozen=True):
     motor_speed_noise_radps: NonNegative = 0.05
     motor_torque_noise_nm: NonNegative = 0.25
     accelerometer: bool = True
-    accel_bias_mps2: float = 0.05
+    accel_bias_mps2: Finite = 0.05
     accel_noise_mps2: NonNegative = 0.03
     seed: Seed = 1
 

@@ -61,7 +61,7 @@ def run(
         BusError: the bus cannot be opened or, in lockstep, the service is silent.
         ConfigError: the recording cannot be written.
     """
-    recorder = TruthRecorder(options.record, scenario, PERIOD_S)
+    recorder = TruthRecorder(options.record, scenario)
     bus, description = open_bus(options.interface, options.channel, options.bitrate)
     say(f"bus: {description}")
     with closing(CanPort(bus, send_timeout_s=_SEND_TIMEOUT_S[options.mode])) as port:

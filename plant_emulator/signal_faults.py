@@ -1,15 +1,17 @@
-"""Faults between the sensors and the frames."""
+"""Faults on signals: between the sensors and the frames, and on torque limits received."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from plant_emulator.encoder import MISSING, Encoder
-from plant_emulator.faults import SIGNALS, VALUE_KINDS, WHEELS, Fault
+from plant_emulator.faults import LIMITS, SIGNALS, VALUE_KINDS, WHEELS, Fault
 from plant_emulator.value_faults import Alteration, alteration
 from tcs_hil.canbus.vehicle_node import VehicleSignals
+from tcs_hil.signals import NO_LIMIT, TorqueLimits
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,27 @@ class SignalFaults:
             if value is not None:
                 values[altered.signal] = altered.alter(value, time_s)
         return _signals(list(values.values()), signals.wheel_speed_valid)
+
+
+class LimitFaults:
+    """Alters the torque limits that arrive; nothing left of one, or no number, is no limit."""
+
+    def __init__(self, faults: tuple[Fault, ...], rng: np.random.Generator) -> None:
+        self._altered = [
+            (LIMITS.index(fault.target), alteration(fault, rng))
+            for fault in faults
+            if fault.target in LIMITS
+        ]
+
+    def apply(self, limits: TorqueLimits, time_s: float) -> TorqueLimits:
+        """What is left of ``limits``; several faults on one act in the order listed."""
+        values: list[float | None] = list(limits)
+        for side, alter in self._altered:
+            value = values[side]
+            if value is not None:
+                values[side] = alter(value, time_s)
+        left, right = (NO_LIMIT if v is None or math.isnan(v) else v for v in values)
+        return TorqueLimits(left, right)
 
 
 def _flat(signals: VehicleSignals) -> tuple[float | None, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import codecs
+import math
 import re
 from pathlib import Path
 
@@ -34,8 +36,9 @@ _RELAXATION = ("PTX1", "LSGKP", "UNLOADED_RADIUS")
 _USED = {*(name.upper() for name in (*_SCALES, "pex4", "pkx3")), *_RELAXATION}
 _USED |= {factor for factors in _SCALES.values() for factor in factors}
 
-_UNITS = ("FORCE", "LENGTH", "ANGLE", "MASS", "TIME")
-_SI = ("newton", "meter", "metre", "radian", "radians", "kg", "kilogram", "second", "n", "m", "s")
+_SECTION = re.compile(r"^\s*\[\s*([A-Z0-9_]+)\s*\]", re.IGNORECASE)
+_UNITS = ("FORCE", "LENGTH", "MASS", "TIME")  # no angle is read
+_SI = ("newton", "meter", "metre", "kg", "kilogram", "second", "n", "m", "s")
 
 _REQUIRED = ("fnomin", "pcx1", "pdx1", "pkx1")
 
@@ -46,10 +49,11 @@ def read_tir(path: Path) -> Tyre:
     What the file leaves out is zero, scale factors are one.  The relaxation length
     comes from pTx1..3 at nominal load where the file has them.  A negative
     rolling-resistance coefficient (the sign convention of some tools) counts as
-    positive.
+    positive.  Slip in the file is rim over ground speed less one; see `Tyre` for ours.
 
     Raises:
-        ConfigError: the file cannot be read, or a coefficient is missing or no number.
+        ConfigError: the file cannot be read, is not in SI units, or a coefficient is
+            missing or no finite number.
     """
     table = _read_table(path)
     coefficients = {
@@ -71,23 +75,36 @@ def read_tir(path: Path) -> Tyre:
 
 def _read_table(path: Path) -> dict[str, float]:
     try:
-        text = path.read_text(encoding="latin-1")  # comments in any language
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from error
-    table = {}
-    for line in text.splitlines():
-        found = _LINE.match(line)
-        if found is None:
+        content = path.read_bytes().removeprefix(codecs.BOM_UTF8)
+    except (OSError, ValueError) as error:  # ValueError: no name a file can have
+        raise ConfigError(f"{path}: cannot be read ({error})") from error
+    table, section = {}, ""
+    for line in content.decode("latin-1").splitlines():  # comments in any language
+        if opened := _SECTION.match(line):
+            section = opened[1].upper()
+        if (found := _LINE.match(line)) is None:
             continue
-        if found[1].upper() in _UNITS and found[2].strip("'\"").lower() not in _SI:
-            raise ConfigError(f"{path}: {found[1]} is in {found[2]}; only SI units are read")
-        if found[1].upper() not in _USED:
-            continue
-        try:
-            table[found[1].upper()] = float(found[2])
-        except ValueError as error:
-            raise ConfigError(f"{path}: {found[1]} is not a number: {found[2]}") from error
+        name, text = found[1].upper(), found[2]
+        if section == "UNITS":
+            _check_unit(path, name, text.strip("'\""))
+        elif name in _USED:
+            table[name] = _number(path, name, text)
     return table
+
+
+def _check_unit(path: Path, name: str, unit: str) -> None:
+    if name in _UNITS and unit.lower() not in _SI:
+        raise ConfigError(f"{path}: {name} is in {unit!r}; only SI units are read")
+
+
+def _number(path: Path, name: str, text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError as error:
+        raise ConfigError(f"{path}: {name} is not a number: {text}") from error
+    if not math.isfinite(number):
+        raise ConfigError(f"{path}: {name} is not finite: {text}")
+    return number
 
 
 def _scale(table: dict[str, float], name: str) -> float:

@@ -17,7 +17,10 @@ class Truth(NamedTuple):
     Wheels come as fl, fr, rl, rr, motors and shafts as left, right.  Motor
     quantities are on the motor side of the gear, shaft quantities on the wheel
     side.  ``slip_ratio`` is the paper's modified kappa of the wheel's and the
-    body's true speeds; ``tyre_slip_ratio`` the lagged one that makes the force.
+    body's true speeds; ``tyre_slip_ratio`` the lagged one that makes the force, its
+    state ``transient_slip_ratio`` and the damping at low speed together.
+    ``held`` is 1 while the parking hold is closed, ``hold_twist_rad`` how far each
+    wheel has turned since it closed.
     ``specific_force_mps2`` is what an accelerometer along the body would feel.
     """
 
@@ -43,6 +46,12 @@ class Truth(NamedTuple):
     force_n: FourWheels
     load_n: FourWheels
     mu: FourWheels
+    heave_rate_mps: float
+    pitch_rate_radps: float
+    held: float
+    wheel_angle_rad: FourWheels
+    transient_slip_ratio: FourWheels
+    hold_twist_rad: FourWheels
 
 
 _WIDTHS: dict[object, int] = {float: 1, Pair: 2, FourWheels: 4}
@@ -81,6 +90,12 @@ TYRE_SLIP = _STARTS["tyre_slip_ratio"]
 FORCE = _STARTS["force_n"]
 LOAD = _STARTS["load_n"]
 MU = _STARTS["mu"]
+HEAVE_RATE = _STARTS["heave_rate_mps"]
+PITCH_RATE = _STARTS["pitch_rate_radps"]
+HELD = _STARTS["held"]
+WHEEL_ANGLE = _STARTS["wheel_angle_rad"]
+TRANSIENT_SLIP = _STARTS["transient_slip_ratio"]
+HOLD_TWIST = _STARTS["hold_twist_rad"]
 
 
 def truth_of(row: Row) -> Truth:

@@ -13,7 +13,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from plant_emulator.bounds import NonNegative, Positive, Table
+from plant_emulator.bounds import Finite, NonNegative, Positive, Table
 from plant_emulator.compiled import compiled
 
 LOW_SPEED_MPS = 0.5
@@ -30,6 +30,12 @@ class Tyre(Table, frozen=True):
     load as published for a 205/60R15 (pDx2 = -0.083: Pacejka, 3rd ed., App. 3),
     the stiffness grows in proportion to it.
 
+    Slip is the slip speed over the greater of rim and ground speed, as in the
+    paper: ground speed in braking, rim speed in driving.  Property files put
+    driving slip over ground speed, too (kappa there, kappa / (1 + kappa) here): a
+    tyre from a file keeps its stiffness and its peak force but peaks at the
+    file's number of our slip.
+
     ``relaxation_m`` is the length the contact patch needs to follow the slip, at
     small slip; it shrinks as the curve bends, because a sliding patch needs no
     deflection.  0 switches the lag off, and with it the ability to stand still
@@ -41,18 +47,18 @@ class Tyre(Table, frozen=True):
     fnomin: Positive = 3433.5  # N, the load at which dfz = 0
     pcx1: Positive = 1.4010
     pdx1: Positive = 1.2005
-    pdx2: float = -0.083
-    pex1: float = 0.0
-    pex2: float = 0.0
-    pex3: float = 0.0
-    pex4: float = 0.0
+    pdx2: Finite = -0.083
+    pex1: Finite = 0.0
+    pex2: Finite = 0.0
+    pex3: Finite = 0.0
+    pex4: Finite = 0.0
     pkx1: Positive = 17.1571 * 1.4010 * 1.2005  # stiffness per load: B C D
-    pkx2: float = 0.0
-    pkx3: float = 0.0
-    phx1: float = 0.0
-    phx2: float = 0.0
-    pvx1: float = 0.0
-    pvx2: float = 0.0
+    pkx2: Finite = 0.0
+    pkx3: Finite = 0.0
+    phx1: Finite = 0.0
+    phx2: Finite = 0.0
+    pvx1: Finite = 0.0
+    pvx2: Finite = 0.0
     qsy1: NonNegative = 0.01
     relaxation_m: Relaxation = 0.15
     low_speed_damping_nspm: NonNegative = 5000.0

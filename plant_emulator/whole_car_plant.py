@@ -14,7 +14,7 @@ from plant_emulator.body import GRAVITY_MPS2
 from plant_emulator.compiled import compiled, records
 from plant_emulator.encoder import Encoder, WheelMotion, make_encoder, pass_edges
 from plant_emulator.inverter import Demand, demanded
-from plant_emulator.road import site_at
+from plant_emulator.road import site_at, time_to_edge
 from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
 from plant_emulator.sensors import IDEAL, Sensors
 from plant_emulator.truth import MU, ROW_SIZE, Row
@@ -22,9 +22,11 @@ from plant_emulator.tyre import modified_slip
 from plant_emulator.whole_car import (
     ANGLE,
     HEAVE,
+    HEAVE_RATE,
     HELD_AT,
     MOTOR_SPEED,
     PITCH,
+    PITCH_RATE,
     POSITION,
     SIZE,
     SPEED,
@@ -36,6 +38,7 @@ from plant_emulator.whole_car import (
     derivative,
 )
 from tcs_hil.errors import ConfigError
+from tcs_hil.signals import Pair
 
 STANDSTILL_MPS = 0.05
 SETTLING_S = 3.0
@@ -60,23 +63,43 @@ def advance(
 ) -> None:
     """Integrate with the classic Runge-Kutta method, in steps of at most 0.1 ms.
 
-    The road is that under the car at the beginning of a step.
+    A step ends where an axle comes onto another patch of the road.
     """
+    state, wheelbase_m = moving.state, cars[0].body.wheelbase_m
+    steps = steps_for(duration_s)
+    longest_s = duration_s / steps
+    for step in range(steps):
+        left_s = longest_s
+        while left_s > 0.0:
+            h = min(left_s, time_to_edge(road, state[POSITION], state[SPEED], wheelbase_m))
+            piece = (step * longest_s + longest_s - left_s, h)
+            _step(moving, demand, cars, road, start_s, piece)
+            left_s -= h
+
+
+@compiled
+def _step(
+    moving: Moving,
+    demand: Demand,
+    cars: Sequence[WholeCar],
+    road: NDArray[np.float64],
+    start_s: float,
+    piece: Pair,
+) -> None:
+    """One step on the road under the car; ``piece``: when on the demand's line, how long (s)."""
+    elapsed_s, h = piece
     state, encoder, work = moving
     car = cars[0]
-    steps = steps_for(duration_s)
-    h = duration_s / steps
-    for step in range(steps):
-        site = site_at(road, state[POSITION], car.body.wheelbase_m, work.row)
-        for stage in range(4):
-            offset_s = STAGES[stage] * h
-            blend(work.trial, state, offset_s, work.rates[stage - 1])
-            asked_nm = demanded(demand, step * h + offset_s)
-            derivative(work.trial, asked_nm, site, car, work.row, work.rates[stage])
-        blend(work.trial, state, 0.0, work.rates[0])  # where the step began, for the teeth
-        conclude(state, h, work.rates)
-        if encoder.edges.shape[1] > 0:
-            _watch_teeth(encoder, work.trial, state, start_s + step * h, h)
+    site = site_at(road, state[POSITION], car.body.wheelbase_m, work.row)
+    for stage in range(4):
+        offset_s = STAGES[stage] * h
+        blend(work.trial, state, offset_s, work.rates[stage - 1])
+        asked_nm = demanded(demand, elapsed_s + offset_s)
+        derivative(work.trial, asked_nm, site, car, work.row, work.rates[stage])
+    blend(work.trial, state, 0.0, work.rates[0])  # where the step began, for the teeth
+    conclude(state, h, work.rates)
+    if encoder.edges.shape[1] > 0:
+        _watch_teeth(encoder, work.trial, state, start_s + elapsed_s, h)
 
 
 @compiled
@@ -100,6 +123,8 @@ def _observe(
     row[truth.DISTANCE], row[truth.BODY_SPEED] = state[POSITION], state[SPEED]
     row[truth.SPECIFIC_FORCE] = row[truth.ACCEL] + GRAVITY_MPS2 * (site.grade_sin + state[PITCH])
     row[truth.PITCH], row[truth.HEAVE] = state[PITCH], state[HEAVE]
+    row[truth.PITCH_RATE], row[truth.HEAVE_RATE] = state[PITCH_RATE], state[HEAVE_RATE]
+    row[truth.HELD] = 0.0 if math.isnan(state[HELD_AT]) else 1.0
     row[truth.GRADE] = site.grade_sin / site.grade_cos
     for side in range(2):
         row[truth.MOTOR_SPEED + side] = state[MOTOR_SPEED + side]
@@ -109,6 +134,10 @@ def _observe(
         row[truth.WHEEL_SPEED + wheel] = state[WHEEL + wheel]
         row[truth.SLIP_SPEED + wheel] = rim - state[SPEED]
         row[truth.SLIP_RATIO + wheel] = modified_slip(rim, state[SPEED])
+        row[truth.WHEEL_ANGLE + wheel] = state[ANGLE + wheel]
+        row[truth.TRANSIENT_SLIP + wheel] = state[TRANSIENT_SLIP + wheel]
+        if row[truth.HELD] > 0.0:
+            row[truth.HOLD_TWIST + wheel] = state[ANGLE + wheel] - state[HELD_AT + wheel]
 
 
 class WholeCarPlant:
@@ -146,7 +175,7 @@ class WholeCarPlant:
         Raises:
             ConfigError: the parameters are too stiff for the integration step.
         """
-        self._hold_or_release(max(demand.request_nm))
+        self._hold_or_release(sum(map(min, demand.request_nm, demand.limit_nm)))
         advance(self._moving, demand, self._car, self._road, time_s, duration_s)
         if not math.isfinite(self._state[SPEED]):
             raise ConfigError(
@@ -164,13 +193,17 @@ class WholeCarPlant:
         self.advance(still, 0.0, SETTLING_S)
         self._state[POSITION] = 0.0
 
-    def _hold_or_release(self, request_nm: float) -> None:
-        """Brake at standstill without request; let go when the request is worth the slope."""
+    def _hold_or_release(self, asked_nm: float) -> None:
+        """Brake at standstill when nothing is asked of the motors; let go when they carry the car.
+
+        ``asked_nm`` is what both together are asked for after their limits: a request
+        that a limit takes away opens no brake.
+        """
         held = self._state[HELD_AT : HELD_AT + 4]
         if math.isnan(held[0]):
-            if request_nm <= 0.0 and self._stands:
+            if asked_nm <= 0.0 and self._stands:
                 held[:] = self._state[ANGLE : ANGLE + 4]
-        elif request_nm > self._slope_torque_nm:
+        elif asked_nm > self._slope_torque_nm:
             held[:] = np.nan
 
     @property
@@ -182,11 +215,11 @@ class WholeCarPlant:
 
     @property
     def _slope_torque_nm(self) -> float:
-        """Torque of each motor that balances the grade."""
+        """Torque of both motors together that balances the grade."""
         body, line = self._parameters.body, self._parameters.driveline
         site = site_at(self._road, self._state[POSITION], body.wheelbase_m, self._work.row)
         pull_n = body.mass_kg * GRAVITY_MPS2 * max(site.grade_sin, 0.0)
-        return pull_n * body.wheel_radius_m / (2.0 * line.gear_ratio)
+        return pull_n * body.wheel_radius_m / line.gear_ratio
 
 
 def _rolling(car: WholeCar, road: NDArray[np.float64], speed_mps: float) -> Array:

@@ -22,13 +22,18 @@ def read_toml(path: Path, struct: type[T]) -> T:
     """
     try:
         text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-        raise ConfigError(f"{path}: cannot be read ({reason})") from error
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{path}: cannot be read (not UTF-8 text)") from error
+    except ValueError as error:  # no name a file can have
+        raise ConfigError(f"{str(path)!r}: cannot be read ({error})") from error
     try:
         table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # broken TOML, or a number of thousands of digits
         raise ConfigError(f"{path}: not valid TOML: {error}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{path}: not valid TOML: nested too deeply") from error
     return convert(table, struct, str(path))
 
 
@@ -36,8 +41,11 @@ def convert(table: object, struct: type[T], source: str) -> T:
     """Check a table of plain values against ``struct``; ``source`` opens the error's sentence."""
     try:
         return msgspec.convert(table, struct)
-    except msgspec.ValidationError as error:
+    except (msgspec.ValidationError, UnicodeDecodeError) as error:
+        # msgspec may cut a name it quotes within a character: UnicodeDecodeError.
         raise ConfigError(f"{source}: {_one_sentence(str(error))}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{source}: nested too deeply") from error
 
 
 def _one_sentence(message: str) -> str:

@@ -25,6 +25,9 @@ def test_a_good_file_becomes_a_frozen_struct(tmp_path: Path) -> None:
         ("release_rate_nmps = -1.0", "release_rate_nmps"),
         ("release_rate_nmps = 'fast'", "release_rate_nmps"),
         ("release_rate_nmps = ", "not valid TOML"),
+        (f"release_rate_nmps = {'9' * 5000}", "not valid TOML"),
+        (f"release_rate_nmps = {'[' * 20_000}{']' * 20_000}", "nested too deeply"),
+        (f"'{'x' * 30}{'é' * 5000}' = 1", "unknown|utf-8"),
     ],
 )
 def test_a_bad_file_is_refused_with_file_and_key_named(
@@ -35,6 +38,11 @@ def test_a_bad_file_is_refused_with_file_and_key_named(
         read_toml(path, GateSettings)
     assert str(path) in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_a_name_no_file_can_have_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="cannot be read"):
+        read_toml(tmp_path / "gate\0.toml", GateSettings)
 
 
 def test_a_missing_file_is_refused_by_name(tmp_path: Path) -> None:

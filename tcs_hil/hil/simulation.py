@@ -22,8 +22,6 @@ from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.service.wiring import build_laws, build_pipeline
 from tcs_hil.signals import Command
 
-PERIOD_S = PERIOD_NS * 1e-9
-
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
@@ -58,7 +56,7 @@ def simulate(scenario: Scenario, config: ServiceConfig) -> Simulation:
     database = load_database()
     node = TcsNode(database)
     mouth = _Mouth(node)
-    recorder = TruthRecorder(None, scenario, PERIOD_S)
+    recorder = TruthRecorder(None, scenario, in_memory=True)
     emulator = Emulator(Plant(scenario), VehicleNode(database), mouth, recorder)
     pipeline = build_pipeline(config, build_laws(config, MonotonicClock()))
     commands = []

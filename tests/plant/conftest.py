@@ -73,7 +73,9 @@ def drive():
     def make(request=((0.0, 0.0),), **tables):
         document = {"description": "test", "duration_s": 60.0, "driver": {"request": request}}
         document["vehicle"] = {
-            name: tables.pop(name) for name in ("body", "tyre", "driveline") if name in tables
+            name: tables.pop(name)
+            for name in ("variant", "body", "tyre", "driveline")
+            if name in tables
         }
         return Plant(msgspec.convert(document | tables, Scenario))
 

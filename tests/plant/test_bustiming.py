@@ -86,11 +86,29 @@ def test_the_lowest_identifier_wins_but_never_interrupts():
     assert [delivery.time_ns for delivery in delivered] == list(np.cumsum(lengths))
 
 
+def data(deliveries):
+    return [delivery.frame.data for delivery in deliveries]
+
+
 def test_equal_identifiers_keep_their_order():
     bus = VirtualBus(WIRE)
-    for data in (b"\x02", b"\x01"):
-        bus.offer(0, 0x100, data, Sender.VEHICLE)
-    assert [delivery.frame.data for delivery in bus.run_until(1_000_000)] == [b"\x02", b"\x01"]
+    for sender, payload in ((Sender.SERVICE, b"\x02"), (Sender.VEHICLE, b"\x01")):
+        bus.offer(0, 0x100, payload, sender)
+    assert data(bus.run_until(1_000_000)) == [b"\x02", b"\x01"]
+
+
+def test_a_newer_frame_replaces_the_one_that_waits_but_not_the_one_on_the_wire():
+    bus = VirtualBus(WIRE)
+    for time_ns, payload in ((0, b"\x01"), (10_000, b"\x02"), (20_000, b"\x03")):
+        bus.offer(time_ns, 0x100, payload, Sender.VEHICLE)
+    assert data(bus.run_until(1_000_000)) == [b"\x01", b"\x03"]
+
+
+def test_a_second_mailbox_keeps_a_duplicate():
+    bus = VirtualBus(WIRE)
+    for mailbox in (0, 1):
+        bus.offer(0, 0x100, b"\x01", Sender.VEHICLE, mailbox)
+    assert data(bus.run_until(1_000_000)) == [b"\x01", b"\x01"]
 
 
 def test_cutting_time_into_pieces_changes_nothing():
@@ -123,6 +141,7 @@ OFFERS = st.lists(
     st.tuples(st.integers(0, 5_000_000), st.integers(0, 0x7FF), st.binary(max_size=8)),
     min_size=1,
     max_size=30,
+    unique_by=lambda offer: offer[1],
 )
 
 

@@ -24,7 +24,7 @@ class Bench:
     def __init__(self, scenario, command):
         self.heard = []
         self.node = TcsNode(DATABASE)
-        self.recorder = TruthRecorder(None, scenario, 0.002)
+        self.recorder = TruthRecorder(None, scenario, in_memory=True)
         self.emulator = Emulator(Plant(scenario), VehicleNode(DATABASE), self, self.recorder)
         self._command = command
         self._now_ns = 0
@@ -125,8 +125,16 @@ def test_limits_that_are_lost_are_held_and_then_released(bench):
 
 
 def test_a_babbling_node_fills_the_wire_but_not_for_ever(bench):
-    rows = bench(fault=load_scenario("fault-babbling").fault).run(1000)
+    """Once it is over nothing stale follows: no more frames than were made since."""
+    (fault,) = load_scenario("fault-babbling").fault
+    running = bench(fault=(fault,))
+    rows = running.run(1000)
     assert np.isfinite(rows["limit_nm"][-1, 0])
+    end_ns = round(fault.end * 1e9)
+    after = [frame_id for stamp, frame_id in running.heard if 0 <= stamp - end_ns < 50_000_000]
+    front_id = DATABASE.messages["WheelSpeedsFront"].frame_id
+    assert Counter(after)[front_id] == pytest.approx(25, abs=1)
+    assert Counter(after)[fault.frame_id] <= 2
 
 
 @pytest.mark.parametrize("name", [listing.name for listing in list_scenarios()])

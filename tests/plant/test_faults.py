@@ -8,11 +8,12 @@ import pytest
 from plant_emulator.bustiming import Sender
 from plant_emulator.faults import Fault, next_boundary
 from plant_emulator.frame_faults import FrameFaults, TimedFrame
+from plant_emulator.signal_faults import LimitFaults
 from plant_emulator.value_faults import alteration
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
-from tcs_hil.signals import TorqueLimits
+from tcs_hil.signals import NO_LIMIT, TorqueLimits
 
 DATABASE = load_database()
 FRONT_ID = DATABASE.messages["WheelSpeedsFront"].frame_id
@@ -72,6 +73,18 @@ def test_intermittent_comes_and_goes():
 def test_boundaries_are_known_in_advance():
     faults = [Fault(target="MotorL", kind="off", start_s=1.0, end_s=2.0)]
     assert [next_boundary(faults, time) for time in (0.0, 1.0, 2.0)] == [1.0, 2.0, math.inf]
+
+
+def test_an_intermittent_fault_knows_all_its_edges():
+    fault = Fault(
+        target="MotorL", kind="intermittent", start_s=0.1, end_s=0.14, period_s=0.03, duty=0.4
+    )
+    time_s, edges, states = 0.0, [], []
+    while (time_s := fault.next_edge(time_s)) < math.inf:
+        edges.append(time_s)
+        states.append(fault.active(time_s))
+    assert edges == pytest.approx([0.1, 0.112, 0.13, 0.14])
+    assert states == [True, False, True, False]
 
 
 @pytest.mark.parametrize(
@@ -226,6 +239,45 @@ def test_a_slow_motor_lags(drive):
     assert torques[-1] == pytest.approx([40.0, 40.0], abs=0.5)
 
 
+MOTOR_VALUE_FAULTS = [
+    {"kind": "stuck"},
+    {"kind": "garbage"},
+    {"kind": "slow", "time_constant_s": 0.03},
+    {"kind": "delayed", "delay_s": 0.013},
+    {"kind": "intermittent", "period_s": 0.0151, "duty": 0.3},
+]
+
+
+@pytest.mark.parametrize("fault", MOTOR_VALUE_FAULTS, ids=lambda fault: fault["kind"])
+def test_a_motor_fault_does_not_depend_on_how_time_is_cut(drive, fault):
+    """Of a pedal that moves all the time, so that when it is read matters."""
+
+    def run(dt_s):
+        plant = drive(
+            [[0.0, 0.0], [1.0, 200.0]],
+            fault=[{"target": "MotorL", "start_s": 0.0511, "end_s": 0.1523, **fault}],
+            start_speed_kmph=20.0,
+        )
+        for _ in range(round(0.2 / dt_s)):
+            plant.step(None, dt_s)
+        return plant.truth.wheel_speed_radps
+
+    assert run(0.0005) == pytest.approx(run(0.02), abs=1e-6)
+
+
+def test_a_healthy_motor_keeps_its_lines_beside_a_faulty_one(drive):
+    """And a fault that is over leaves nothing behind."""
+    fault = {"target": "MotorL", "kind": "wrong", "offset": -5.0, "end_s": 0.1}
+    healthy, faulty = (
+        drive([[0.0, 0.0], [1.0, 200.0]], fault=faults, start_speed_kmph=20.0)
+        for faults in ([], [fault])
+    )
+    for plant in (healthy, faulty):
+        plant.step(None, 0.4011)
+    asked = [plant.truth.motor_torque_nm for plant in (healthy, faulty)]
+    assert asked[0] == pytest.approx(asked[1], abs=1e-6)
+
+
 def test_a_brown_out_takes_the_torque(drive):
     plant = drive(
         [[0.0, 100.0]],
@@ -252,3 +304,25 @@ def test_a_missing_tooth_comes_and_goes(drive):
         ripple.append(max(shown) - min(shown))
     assert ripple[0] < 0.02
     assert min(ripple[1:3]) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("fault", "expected"),
+    [
+        ({"kind": "wrong", "scale": 0.5}, TorqueLimits(30.0, 60.0)),
+        ({"kind": "off"}, TorqueLimits(NO_LIMIT, 60.0)),
+        ({"kind": "garbage", "low": 7.0, "high": 7.0}, TorqueLimits(7.0, 60.0)),
+    ],
+)
+def test_a_torque_limit_can_be_spoilt_on_its_way_in(fault, expected):
+    faults = LimitFaults(
+        (Fault(target="TorqueLimitL", start_s=1.0, **fault),), np.random.default_rng(0)
+    )
+    assert faults.apply(TorqueLimits(60.0, 60.0), 0.5) == TorqueLimits(60.0, 60.0)
+    assert faults.apply(TorqueLimits(60.0, 60.0), 1.5) == expected
+
+
+def test_no_limit_survives_a_slow_limit_signal():
+    faults = LimitFaults((Fault(target="TorqueLimitR", kind="slow"),), np.random.default_rng(0))
+    for _ in range(3):
+        assert faults.apply(TorqueLimits(), 0.1) == TorqueLimits()

@@ -24,7 +24,7 @@ def never():
 
 
 def emulator_for(scenario, port, *, live=True):
-    recorder = TruthRecorder(None, scenario, PERIOD_NS * 1e-9)
+    recorder = TruthRecorder(None, scenario, in_memory=True)
     return Emulator(Plant(scenario), VehicleNode(load_database()), port, recorder, live=live)
 
 
@@ -164,7 +164,7 @@ def test_the_recording_is_read_with_numpy_alone(launch, tmp_path):
     clock = ScriptedClock()
     port = ScriptedPort(clock)
     path = tmp_path / "truth.npz"
-    recorder = TruthRecorder(path, launch, 0.002)
+    recorder = TruthRecorder(path, launch)
     emulator = Emulator(Plant(launch), VehicleNode(load_database()), port, recorder)
     recorder.save(run_realtime(emulator, port, clock, never))
     with np.load(path) as file:

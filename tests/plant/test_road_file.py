@@ -26,6 +26,10 @@ def test_patches_are_read_and_empty_cells_left_out(road):
     )
 
 
+def test_a_byte_order_mark_and_spaces_after_commas_are_no_part_of_a_name(road):
+    assert read_road(road("\ufefffrom_m, mu\n0, 0.6\n")) == (Patch(mu=0.6),)
+
+
 @pytest.mark.parametrize(
     ("text", "named"),
     [

@@ -12,6 +12,8 @@ duration_s = 1.0
 request = [[0.0, 100.0]]
 """
 
+GARBAGE = '[[fault]]\ntarget = "WheelSpeedFL"\nkind = "garbage"\n'
+
 
 def refusal(tmp_path, text):
     path = tmp_path / "bad.toml"
@@ -19,7 +21,7 @@ def refusal(tmp_path, text):
     with pytest.raises(ConfigError) as caught:
         load_scenario(path)
     message = str(caught.value)
-    assert str(path) in message
+    assert str(tmp_path) in message
     assert "\n" not in message
     return message
 
@@ -49,6 +51,17 @@ def test_an_unknown_name_is_refused_by_name():
         load_scenario("no-such-thing")
 
 
+def test_a_road_file_no_file_can_be_is_refused(tmp_path):
+    text = MINIMAL.replace("[driver]", 'road_file = "a\\u0000b.csv"\n[driver]')
+    assert "null byte" in refusal(tmp_path, text)
+
+
+@pytest.mark.parametrize("name", ["*", "**", "manoeuvre-?", "[m]anoeuvre-1", "x" * 5000, ""])
+def test_a_name_is_no_pattern(name):
+    with pytest.raises(ConfigError, match="neither a file nor one that is shipped"):
+        load_scenario(name)
+
+
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(ConfigError, match=r"absent\.toml"):
         load_scenario(tmp_path / "absent.toml")
@@ -68,6 +81,24 @@ def test_a_missing_file_is_refused(tmp_path):
         ('[[expect]]\nop = "<"\nvalue = 1.0\n', "signal"),
         ('[[expect]]\nop = "<"\nvalue = 1.0\nmetric = "peak"\nfrom_s = 2.0\nto_s = 1.0\n', "to_s"),
         ("[brakes]\n", "brakes"),
+        (5 * '[[fault]]\ntarget = "TcsStatus"\nkind = "duplicated"\n', "duplicated"),
+        ("[vehicle.body]\nmass_kg = 150\n", "mass_kg"),
+        ("[vehicle.body]\nwheelbase_m = 1.2\n", "wheelbase_m"),
+        ("[bus]\nlimit_delay_s = inf\n", "limit_delay_s"),
+        ("[vehicle.body]\nmass_kg = nan\n", "mass_kg"),
+        ("[vehicle.tyre]\nphx1 = -inf\n", "phx1"),
+        ("[sensors]\naccel_bias_mps2 = 1e300\n", "accel_bias_mps2"),
+        ('[vehicle]\ntyre_file = "a\\u0000b.tir"\n', "null byte"),
+        (GARBAGE + "low = 2.0\nhigh = 1.0\n", "low"),
+        (GARBAGE + "high = inf\n", "high"),
+        (GARBAGE + "low = nan\n", "low"),
+        ('[[fault]]\ntarget = "MotorState"\nkind = "delayed"\ndelay_s = inf\n', "delay_s"),
+        ('[[fault]]\ntarget = "VEHICLE"\nkind = "babbling"\nperiod_s = inf\n', "period_s"),
+        (
+            '[[fault]]\ntarget = "WheelSpeedFL"\nkind = "tooth-missing"\n'
+            "tooth = 99999999999999999999\n",
+            "tooth",
+        ),
     ],
 )
 def test_a_wrong_key_or_value_is_refused_by_name(tmp_path, addition, named):

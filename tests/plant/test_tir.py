@@ -78,6 +78,22 @@ def test_other_units_than_si_are_refused(tir):
         read_tir(tir("[UNITS]\nFORCE = 'pound_force'\n" + GOOD))
 
 
+def test_units_are_those_of_the_units_section_and_no_angle_is_read(tir):
+    header = "[UNITS]\nANGLE = 'degrees'\nFORCE = 'newton'\n[MODEL]\nLENGTH = 'long'\n"
+    assert read_tir(tir(header + GOOD)) == read_tir(tir(GOOD))
+
+
+def test_a_byte_order_mark_is_no_part_of_the_first_name(tir):
+    text = GOOD.replace("FNOMIN  = 4.0E+3            $nominal load\n", "")
+    assert read_tir(tir("\ufeffFNOMIN = 4000\n" + text)) == read_tir(tir(GOOD))
+
+
+@pytest.mark.parametrize("number", ["inf", "nan", "1e999"])
+def test_a_coefficient_that_is_not_finite_is_named(tir, number):
+    with pytest.raises(ConfigError, match=r"tyre\.tir: PEX1 is not finite"):
+        read_tir(tir(GOOD.replace("0.11113", number)))
+
+
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(ConfigError, match=r"absent\.tir"):
         read_tir(tmp_path / "absent.tir")

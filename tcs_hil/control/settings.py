@@ -119,7 +119,7 @@ class ControlSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     """
 
     preset: PresetName = "default"
-    period_s: Annotated[float, msgspec.Meta(gt=0.0, le=0.02)] = 0.002
+    period_s: Annotated[float, msgspec.Meta(ge=1e-4, le=0.02)] = 0.002
     slip_reference: Annotated[float, msgspec.Meta(gt=0.0, le=0.5)] = 0.1
     pi: PiSettings = PiSettings()
     kmpc: KmpcSettings = KmpcSettings()

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tcs_hil.model.excitation import ExcitationSettings
 from tcs_hil.model.fleet import FleetSettings
 from tcs_hil.model.provenance import LAYOUT_VERSION, Source, Validity
-from tcs_hil.model.ranges import Range, check_rising
-from tcs_hil.model.vehicle import Positive, Vehicle
+from tcs_hil.model.ranges import Period, Range, check_rising
+from tcs_hil.model.vehicle import Vehicle
 
 FloatArray = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class BandSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 class BankSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What to identify from what."""
 
-    period_s: Positive = 0.002
+    period_s: Period = 0.002
     vehicle: Vehicle = Vehicle()
     bands: BandSettings = BandSettings()
     fleet: FleetSettings = FleetSettings()

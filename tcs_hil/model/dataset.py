@@ -9,8 +9,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from tcs_hil.model.ranges import Range
-from tcs_hil.model.vehicle import Positive, Vehicle
+from tcs_hil.model.ranges import Period, Range
+from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.model.wheel import rk4_step, stable_substeps
 
 FloatArray = NDArray[np.float64]
@@ -21,9 +21,9 @@ Progress = Callable[[float], None]
 class DatasetSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Excitation of the data set; the defaults are the paper's."""
 
-    trajectories: Annotated[int, msgspec.Meta(ge=1)] = 1000
-    samples: Annotated[int, msgspec.Meta(ge=1)] = 250
-    period_s: Positive = 0.002
+    trajectories: Annotated[int, msgspec.Meta(ge=1, le=10_000)] = 1000
+    samples: Annotated[int, msgspec.Meta(ge=1, le=1_000)] = 250
+    period_s: Period = 0.002
     initial_speed_mps: Range = (0.0, 40.0 / 3.6)
     initial_slip_ratio: Range = (0.0, 0.2)
     torque_nm: Range = (50.0, 175.0)

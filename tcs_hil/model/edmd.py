@@ -48,6 +48,8 @@ def fit(z: FloatArray, u: FloatArray, z_next: FloatArray) -> Regression:
     Raises ModelError when the data leave A and B undetermined.
     """
     regressor = np.hstack((z, u))
+    if not (np.isfinite(regressor).all() and np.isfinite(z_next).all()):
+        raise ModelError("the data set runs away: speeds or torques are beyond any car's")
     length = np.linalg.norm(regressor, axis=0)
     length[length == 0.0] = 1.0
     scaled_solution, _, rank, singular = np.linalg.lstsq(regressor / length, z_next)

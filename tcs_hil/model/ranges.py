@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import msgspec
 
-Range = tuple[float, float]
+Bounded = Annotated[float, msgspec.Meta(ge=-1e5, le=1e5)]
+"""Any quantity of a car in SI units; neither infinite nor a slip of the pen."""
+Range = tuple[Bounded, Bounded]
+Period = Annotated[float, msgspec.Meta(ge=1e-4, le=0.1)]
+"""Sampling time in s."""
 
 
 def check_rising(settings: msgspec.Struct) -> None:

@@ -128,3 +128,31 @@ def test_the_list_of_commands_is_shown_without_arguments(
     status, _, error = run(monkeypatch, capsys)
     assert status == 2
     assert all(name in error for name in cli.COMMANDS)
+
+
+@pytest.mark.parametrize(
+    ("text", "culprit"),
+    [
+        ("[dataset]\nperiod_s = 1e9", "dataset.period_s"),
+        ("[dataset]\ntorque_nm = [0.0, 1e300]", "dataset.torque_nm"),
+        ("[dataset]\ninitial_speed_mps = [0.0, inf]", "dataset.initial_speed_mps"),
+        ("[dataset]\ntrajectories = 1000000000", "dataset.trajectories"),
+        ("[vehicle]\nmass_kg = inf", "vehicle.mass_kg"),
+    ],
+)
+def test_numbers_beyond_any_car_are_refused_before_the_work(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    text: str,
+    culprit: str,
+) -> None:
+    settings = tmp_path / "identify.toml"
+    settings.write_text(text)
+    status, _, error = run(
+        *(monkeypatch, capsys, "identify", "--preset", "paper"),
+        *("--settings", str(settings), "--output", str(tmp_path / "model.npz")),
+    )
+    assert status == 2
+    assert culprit in error
+    assert not (tmp_path / "model.npz").exists()

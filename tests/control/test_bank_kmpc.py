@@ -33,7 +33,9 @@ def reference_plan(band: int, x: np.ndarray, last_nm: float, torque_ref_nm: floa
     """Optimal torques (N,) in Nm by rolling the band out; no condensing, no Hessian."""
     tuning = SETTINGS.default.kmpc
     system = band_problems(BANK, SETTINGS)[0][band]
-    soft = min(1.0, BANK.centre_mps[band] / tuning.soft_speed_mps)
+    centre_mps = BANK.centre_mps[band]
+    soft = min(1.0, centre_mps / tuning.soft_speed_mps)
+    slow = min(1.0, tuning.integral_speed_mps / centre_mps)
 
     def residuals(torques: np.ndarray) -> np.ndarray:
         state, previous, terms = x, last_nm, []
@@ -41,7 +43,7 @@ def reference_plan(band: int, x: np.ndarray, last_nm: float, torque_ref_nm: floa
             state = system.a @ state + system.b[:, 0] * u
             error = state[Observable.SLIP_RATIO] - SETTINGS.slip_reference * state[Observable.ONE]
             terms += [soft * tuning.weight_slip**0.5 * error]
-            terms += [soft * tuning.weight_integral**0.5 * state[INTEGRAL]]
+            terms += [soft * slow * tuning.weight_integral**0.5 * state[INTEGRAL]]
             terms += [tuning.weight_reduction**0.5 * (torque_ref_nm - u)]
             terms += [tuning.weight_change**0.5 * (u - previous)]
             previous = u

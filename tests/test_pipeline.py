@@ -80,6 +80,15 @@ def test_a_failed_solve_holds_the_ceiling_and_says_so(
     )
 
 
+def test_a_law_that_fails_for_want_of_inputs_is_not_the_reason(
+    pipeline: Pipeline, laws: tuple[Scripted, Scripted]
+) -> None:
+    laws[0].proposal = Proposal(100.0, SolveStatus.FAILED)
+    command = pipeline.step(measurement(rear_speed_age_s=0.007))
+    assert command.limits.left_nm == 60.0
+    assert (command.state, command.fault_code) == (TcsState.DEGRADED, FaultCode.REAR_SPEED_LATE)
+
+
 def test_a_fault_ramps_the_ceiling_up_and_forgets_the_integrators(
     pipeline: Pipeline, laws: tuple[Scripted, Scripted]
 ) -> None:

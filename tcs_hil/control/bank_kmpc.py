@@ -39,6 +39,7 @@ class BankOptimiser:
         self._a, self._b = np.eye(NX), np.zeros(NX)
         self._before: Sample | None = None
         self._expected_radps = math.nan
+        self._sent_nm = 0.0
         self._disturbance.reset()
         for problem in self._problems:
             problem.reset()
@@ -62,6 +63,7 @@ class BankOptimiser:
 
     def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm within [0, torque_ref_nm]."""
+        self._sent_nm = last_torque_nm
         plans = [
             self._problems[band].solve(state, last_torque_nm, torque_ref_nm)
             for band, _ in self._shares
@@ -73,7 +75,8 @@ class BankOptimiser:
             wheel.slip_speed_mps,
             wheel.wheel_speed_radps,
             wheel.motor_speed_radps / self._vehicle.gear_ratio,
-            wheel.motor_torque_nm,
+            # Without a motor on the bus, what was sent to it is the best guess.
+            self._sent_nm if math.isnan(wheel.motor_torque_nm) else wheel.motor_torque_nm,
         )
 
     def _interpolate(self, speed_mps: float) -> None:

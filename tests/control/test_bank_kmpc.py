@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
+
 import numpy as np
 import pytest
 from msgspec.structs import replace
@@ -66,6 +69,15 @@ def test_the_plan_of_a_band_is_the_exact_minimiser(band: int) -> None:
         assert plan.status is SolveStatus.OK
         expected = reference_plan(band, x, 120.0, 200.0)
         assert np.abs(plan.inputs - expected).max() < AGREEMENT_NM
+
+
+def test_without_a_motor_on_the_bus_it_goes_on_with_what_it_sent() -> None:
+    law = bank_mpc(SETTINGS, BANK)
+    wheel = wheel_at(6.0, 0.1, 100.0)
+    known = [law.step(wheel, 200.0).torque_nm for _ in range(20)][-1]
+    proposal = law.step(dataclasses.replace(wheel, motor_torque_nm=math.nan), 200.0)
+    assert proposal.status is SolveStatus.OK
+    assert proposal.torque_nm == pytest.approx(known, abs=20.0)  # no jump, no wide-open throttle
 
 
 @pytest.mark.parametrize("border", [1.0978, 3.4435, 7.0])

@@ -1,5 +1,6 @@
 """Exact timing on a real vcan0: the clock moves only while everything sleeps."""
 
+from collections import defaultdict
 from collections.abc import Callable
 from decimal import Decimal
 from itertools import pairwise
@@ -10,6 +11,7 @@ import pytest
 
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.port import CanPort
+from tcs_hil.hil.processes import program
 from tcs_hil.runtime.clock import MonotonicClock
 from tcs_hil.runtime.recording import read
 
@@ -55,3 +57,23 @@ def test_a_service_that_ticks_with_the_wheel_speeds_wakes_when_they_come(tmp_pat
     # The first may come just after a tick that was made without it, and be nobody's start.
     assert len(met) >= TICKS - 1
     assert np.median(met["wake_ns"] - met["scheduled_ns"]) < PROMPT_NS
+
+
+@pytest.mark.parametrize("car", ["quarter-car", "vehicle"])
+def test_the_emulator_alone_sends_every_message_on_its_cycle(
+    tmp_path: Path, candump: Callable[[int], Candump], car: str
+) -> None:
+    dump = candump(1000)
+    arguments = ("plant_emulator", "run", "--scenario", "manoeuvre-1", "--vehicle", car)
+    with program(*arguments, "--channel", CHANNEL, log=tmp_path / "plant.log"):
+        lines = dump.lines()
+    stamps_ms: dict[str, list[float]] = defaultdict(list)
+    for line in lines:
+        stamp, _, frame = line.split()
+        stamps_ms[frame.partition("#")[0]].append(float(Decimal(stamp.strip("()")) * 1000))
+    assert set(stamps_ms) == {"098", "0A0", "0A1", "0A2"}
+    for frame_id, cycle_ms in (("098", 10.0), ("0A0", 2.0), ("0A1", 2.0), ("0A2", 2.0)):
+        gaps_ms = [later - earlier for earlier, later in pairwise(stamps_ms[frame_id])]
+        # On the whole car's emulated wire a cycle's frames wait for each other, up to one frame.
+        assert gaps_ms == pytest.approx([cycle_ms] * len(gaps_ms), abs=0.3)
+        assert sum(gaps_ms) / len(gaps_ms) == pytest.approx(cycle_ms, abs=0.01)

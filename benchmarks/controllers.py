@@ -1,4 +1,4 @@
-"""Time of one controller step along the paper's two manoeuvres, beside the paper's own figures.
+"""Time of a step of each published law along both manoeuvres, beside the paper's own figures.
 
     python -m benchmarks.controllers                    a table
     python -m benchmarks.controllers --json > out.json  the same, for programs
@@ -106,7 +106,9 @@ def measure(kind: ControllerKind, manoeuvre: str, predictor: KoopmanPredictor, r
     wall_ns: list[int] = []
     cpu_ns: list[int] = []
     for _ in range(runs):
-        watch = Stopwatch(make_controller(kind, ControlSettings(), Vehicle(), predictor))
+        watch = Stopwatch(
+            make_controller(kind, ControlSettings(preset="paper"), Vehicle(), predictor)
+        )
         MANOEUVRES[manoeuvre](watch)
         wall_ns += watch.wall_ns
         cpu_ns += watch.cpu_ns

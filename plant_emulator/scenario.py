@@ -55,14 +55,17 @@ class VehicleTable(Table, frozen=True):
 
 
 class ControllerTable(Table, frozen=True):
-    """Which control law the bench starts against this scenario; the emulator does not read it."""
+    """Which control law a bench should start against this scenario; nothing reads it yet."""
 
     kind: Literal["off", "pi", "kmpc", "nmpc"] = "nmpc"
     preset: str = "default"
 
 
 class Expect(Table, frozen=True):
-    """A limit the bench judges: a signal in every sample of the window, or a metric over it."""
+    """A limit on a signal in every sample of the window, or on a metric over it.
+
+    Checked for form when the scenario is read; nothing judges it yet.
+    """
 
     op: Literal["<", "<=", ">", ">=", "=="]
     value: float

@@ -31,7 +31,7 @@ wheel: $(STAMP)
 
 lock: $(STAMP)
 	$(BIN)/python -m pip install --quiet uv
-	$(BIN)/uv pip compile pyproject.toml --group dev --output-file $(LOCK) \
+	$(BIN)/uv pip compile pyproject.toml --all-extras --group dev --output-file $(LOCK) \
 	    --universal --python-version 3.11 --generate-hashes --upgrade --no-config \
 	    --no-emit-index-url --no-annotate --custom-compile-command 'make lock'
 

@@ -38,6 +38,31 @@ class ControllerKind(IntEnum):
     NMPC = 3
 
 
+class InputState(IntEnum):
+    """What the protection of one received message has come to (E2E state machine).
+
+    NO_DATA before the first frame, INIT while too few were good, VALID, and
+    INVALID once too many were not.
+    """
+
+    NO_DATA = 0
+    INIT = 1
+    VALID = 2
+    INVALID = 3
+
+
+class BusCondition(IntEnum):
+    """Worst that the bus itself has shown since the tick before; worse is greater."""
+
+    OK = 0
+    OVERFLOW = 1  # frames were lost because nobody had read them
+    SEND_FAILED = 2  # a limit could not be handed to the bus
+    ERROR_PASSIVE = 3  # the CAN controller has seen many errors
+    DOWN = 4  # interface down or removed
+    BUS_OFF = 5  # the CAN controller has left the bus
+    INTRUDER = 6  # somebody else sends what only we may send
+
+
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """Newest value of every input, with the age of each source at the tick.
@@ -56,6 +81,11 @@ class Measurement:
     rear_speed_age_s: float
     motor_age_s: float
     driver_age_s: float
+    front_speed_state: InputState = InputState.VALID
+    rear_speed_state: InputState = InputState.VALID
+    motor_state: InputState = InputState.VALID
+    driver_state: InputState = InputState.VALID
+    bus: BusCondition = BusCondition.OK
 
 
 class TorqueLimits(NamedTuple):

@@ -16,7 +16,9 @@ from cantools.database.errors import UnsupportedDatabaseFormatError
 from tcs_hil.canbus.codec import Codec, SignalSpec, compile_codec
 from tcs_hil.canbus.contract import CONTRACT, MessageContract
 from tcs_hil.canbus.e2e import E2ESpec
-from tcs_hil.canbus.validation import check_identifiers, check_message, check_protection
+from tcs_hil.canbus.e2e_state import WindowSpec
+from tcs_hil.canbus.protection import check_protection, check_window
+from tcs_hil.canbus.validation import check_identifiers, check_message
 from tcs_hil.errors import DatabaseError
 
 DBC_ENCODING = "cp1252"  # what the DBC format prescribes
@@ -38,6 +40,7 @@ class MessageSpec:
     signals: tuple[SignalSpec, ...]
     codec: Codec
     e2e: E2ESpec | None
+    window: WindowSpec
 
     def signal(self, name: str) -> SignalSpec:
         """Look a signal of the contract up by name."""
@@ -113,6 +116,7 @@ def _message_spec(parsed: CanDatabase, contract: MessageContract) -> MessageSpec
         signals=signals,
         codec=compile_codec(message.name, message.length, signals),
         e2e=check_protection(message) if contract.protected else None,
+        window=check_window(message),
     )
 
 

@@ -28,13 +28,13 @@ class E2ESpec:
 
 
 class E2EStatus(IntEnum):
-    """Verdict on the newest frame of a message."""
+    """What one cycle of a message brought; the standard's profile status."""
 
-    NONE = 0
-    OK = 1
-    REPEATED = 2
-    WRONG_SEQUENCE = 3
-    ERROR = 4
+    OK = 0
+    REPEATED = 1
+    WRONG_SEQUENCE = 2
+    ERROR = 3
+    NOT_AVAILABLE = 4  # no frame
 
 
 class Protector:
@@ -54,29 +54,25 @@ class Protector:
 
 
 class Checker:
-    """Receiver's side of one message."""
+    """Receiver's side of one message, frame by frame."""
 
-    __slots__ = ("_last_counter", "_spec", "status")
+    __slots__ = ("_last_counter", "_spec")
 
     def __init__(self, spec: E2ESpec) -> None:
         self._spec = spec
         self._last_counter: int | None = None
-        self.status = E2EStatus.NONE
 
     def check(self, payload: bytes) -> E2EStatus:
         """Judge the next frame of the message; its values count only when ``OK``."""
-        if e2e_p02_check(payload, self._spec.data_ids):
-            self.status = self._judge_counter(payload[1] & COUNTER_MASK)
-        else:
-            self.status = E2EStatus.ERROR
-        return self.status
-
-    def _judge_counter(self, counter: int) -> E2EStatus:
+        if not e2e_p02_check(payload, self._spec.data_ids):
+            return E2EStatus.ERROR
+        counter = payload[1] & COUNTER_MASK
+        # The counter is taken over whatever it is: after a restart of the sender the next
+        # frame in order is good again.
         last, self._last_counter = self._last_counter, counter
-        if last is None:
-            return E2EStatus.OK
-        delta = (counter - last) & COUNTER_MASK
+        return E2EStatus.OK if last is None else self._judge_step((counter - last) & COUNTER_MASK)
+
+    def _judge_step(self, delta: int) -> E2EStatus:
         if delta == 0:
             return E2EStatus.REPEATED
-        # The counter is taken over all the same: the next frame in order is good again.
         return E2EStatus.OK if delta <= self._spec.max_delta_counter else E2EStatus.WRONG_SEQUENCE

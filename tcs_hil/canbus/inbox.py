@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Protocol
 
 from tcs_hil.canbus.database import MessageSpec
 from tcs_hil.canbus.e2e import Checker, E2EStatus
+from tcs_hil.canbus.watch import MessageWatch
+from tcs_hil.signals import InputState
 
 
 @dataclass(slots=True)
@@ -21,6 +24,21 @@ class InboxCounters:
     repeated: int = 0
     wrong_sequence: int = 0
     own_id: int = 0
+
+
+class Receiver(Protocol):
+    """What an inbox sorts frames into."""
+
+    frame_id: int
+    length: int
+
+    def put(self, data: bytes, stamp_ns: int) -> E2EStatus:
+        """Judge a frame of the right length and keep its values when they are good."""
+        ...
+
+    def reject(self, stamp_ns: int) -> None:
+        """Take note of a frame of the wrong length."""
+        ...
 
 
 class Mailbox:
@@ -48,11 +66,38 @@ class Mailbox:
             self.stamp_ns = stamp_ns
         return status
 
+    def reject(self, stamp_ns: int) -> None:
+        """Take note of a frame of the wrong length."""
+
     def age_s(self, now_ns: int) -> float:
         """Time since the newest good frame; infinite before the first, never negative."""
         if self.stamp_ns is None:
             return math.inf
         return max(now_ns - self.stamp_ns, 0) * 1e-9
+
+
+class WatchedMailbox(Mailbox):
+    """Mailbox of a cyclic message that also knows what state its protection has come to."""
+
+    __slots__ = ("_watch",)
+
+    def __init__(self, spec: MessageSpec, initial: tuple[float, ...]) -> None:
+        super().__init__(spec, initial)
+        self._watch = MessageWatch(spec.window, spec.cycle_ns)
+
+    def put(self, data: bytes, stamp_ns: int) -> E2EStatus:
+        """Judge a frame as every mailbox does, and count it."""
+        status = super().put(data, stamp_ns)
+        self._watch.count(status, stamp_ns)
+        return status
+
+    def reject(self, stamp_ns: int) -> None:
+        """Count a frame of the wrong length as an error."""
+        self._watch.count(E2EStatus.ERROR, stamp_ns)
+
+    def state(self, now_ns: int) -> InputState:
+        """What the protection has come to by ``now_ns``."""
+        return self._watch.state(now_ns)
 
 
 class Inbox:
@@ -62,7 +107,7 @@ class Inbox:
     counted apart.
     """
 
-    def __init__(self, mailboxes: Iterable[Mailbox], own_ids: Iterable[int]) -> None:
+    def __init__(self, mailboxes: Iterable[Receiver], own_ids: Iterable[int]) -> None:
         self.counters = InboxCounters()
         self._mailboxes = {mailbox.frame_id: mailbox for mailbox in mailboxes}
         self._own_ids = frozenset(own_ids)
@@ -75,6 +120,7 @@ class Inbox:
             return False
         if len(data) != mailbox.length:
             self.counters.wrong_length += 1
+            mailbox.reject(stamp_ns)
             return False
         status = mailbox.put(data, stamp_ns)
         self._count(status)

@@ -7,7 +7,9 @@ from typing import Protocol
 
 import can
 
+from tcs_hil.canbus.embedded import EmbeddedBus
 from tcs_hil.canbus.frame import Frame, PortCounters
+from tcs_hil.canbus.health import BusHealth
 from tcs_hil.canbus.stamps import stamping_of
 
 DRAIN_LIMIT = 256
@@ -31,11 +33,17 @@ class Link(Protocol):
 
 
 class MessageLink:
-    """Any bus of python-can, message by message."""
+    """Any bus of python-can, message by message.
 
-    def __init__(self, bus: can.BusABC, counters: PortCounters) -> None:
+    Error frames are read on the embedded bus, which carries SocketCAN's; every
+    other interface has a language of its own for them, so they are only counted.
+    """
+
+    def __init__(self, bus: can.BusABC, counters: PortCounters, health: BusHealth) -> None:
         self._bus = bus
         self._counters = counters
+        self._health = health
+        self._reads_error_frames = isinstance(bus, EmbeddedBus)
         self._stamp_ns = stamping_of(bus)
         self._pending: can.Message | None = None
         try:
@@ -49,7 +57,10 @@ class MessageLink:
             message = self._next_message()
             if message is None:
                 return
-            if self._is_ours(message):
+            if message.is_error_frame:
+                self._read_error_frame(message)
+            elif self._is_ours(message):
+                self._health.heard()
                 stamp_ns = self._stamp_ns(message)
                 frames.append(Frame(message.arbitration_id, bytes(message.data), stamp_ns))
 
@@ -74,10 +85,13 @@ class MessageLink:
         message, self._pending = self._pending, None
         return message
 
+    def _read_error_frame(self, message: can.Message) -> None:
+        self._counters.error_frames += 1
+        if self._reads_error_frames:
+            self._health.error_frame(message.arbitration_id, bytes(message.data))
+
     def _is_ours(self, message: can.Message) -> bool:
-        if message.is_error_frame:
-            self._counters.error_frames += 1
-        elif message.is_remote_frame:
+        if message.is_remote_frame:
             self._counters.remote_frames += 1
         elif message.is_extended_id or message.is_fd:
             self._counters.dropped += 1

@@ -11,15 +11,17 @@ from can.interfaces.socketcan import SocketcanBus
 
 from tcs_hil.canbus.bus import choose_interface, open_bus
 from tcs_hil.canbus.frame import Frame, PortCounters
+from tcs_hil.canbus.health import BusHealth
 from tcs_hil.canbus.link import DRAIN_LIMIT, Link, MessageLink
 from tcs_hil.canbus.socket_link import SocketLink
 from tcs_hil.errors import BusError
+from tcs_hil.signals import BusCondition
 
 __all__ = ["DRAIN_LIMIT", "CanPort", "Frame", "PortCounters", "open_port"]
 
 REOPEN_INTERVAL_NS = 100_000_000
 
-_UNUSABLE = frozenset({errno.ENODEV, errno.ENXIO, errno.EBADF})
+_GONE = frozenset({errno.ENODEV, errno.ENXIO, errno.EBADF})
 """The interface was removed; a socket does not find its successor by itself."""
 
 
@@ -62,6 +64,7 @@ class CanPort:
         send_timeout_s: float = 0.0,
     ) -> None:
         self.counters = PortCounters()
+        self._health = BusHealth()
         self._reopen = reopen
         self._send_timeout_s = send_timeout_s
         self._reopen_at_ns: int | None = None
@@ -83,9 +86,11 @@ class CanPort:
             self._link.send(frame_id, data, self._send_timeout_s)
         except (can.CanError, OSError) as error:
             self.counters.tx_errors += 1
+            self._health.send_failed()
             self._notice(error)
             return False
         self.counters.tx += 1
+        self._health.sent()
         return True
 
     def wait(self, timeout_s: float) -> bool:
@@ -97,13 +102,17 @@ class CanPort:
             self._count_receive_error(error)
             return False
 
+    def condition(self) -> BusCondition:
+        """Worst that the bus has shown since the last call; what lasts is said again."""
+        return self._health.condition()
+
     def close(self) -> None:
         """Leave the bus."""
         self._bus.shutdown()
 
     def _use(self, bus: can.BusABC) -> None:
         self._bus = bus
-        self._link = _link_to(bus, self.counters)
+        self._link = _link_to(bus, self.counters, self._health)
 
     def _count_receive_error(self, error: can.CanError | OSError) -> None:
         self.counters.rx_errors += 1
@@ -111,8 +120,10 @@ class CanPort:
 
     def _notice(self, error: can.CanError | OSError) -> None:
         code = error.error_code if isinstance(error, can.CanError) else error.errno
+        if code == errno.ENETDOWN or code in _GONE:
+            self._health.link_lost()
         # A mere ENETDOWN heals by itself: the socket works again once the interface is up.
-        if code in _UNUSABLE and self._reopen_at_ns is None:
+        if code in _GONE and self._reopen_at_ns is None:
             self._reopen_at_ns = time.monotonic_ns()
 
     def _recover(self) -> None:
@@ -132,7 +143,7 @@ class CanPort:
         self.counters.reopened += 1
 
 
-def _link_to(bus: can.BusABC, counters: PortCounters) -> Link:
+def _link_to(bus: can.BusABC, counters: PortCounters, health: BusHealth) -> Link:
     if isinstance(bus, SocketcanBus):
-        return SocketLink(bus.socket, counters)
-    return MessageLink(bus, counters)
+        return SocketLink(bus.socket, counters, health)
+    return MessageLink(bus, counters, health)

@@ -14,6 +14,7 @@ import time
 from can.interfaces.socketcan import constants
 
 from tcs_hil.canbus.frame import Frame, PortCounters
+from tcs_hil.canbus.health import BusHealth
 from tcs_hil.canbus.link import DRAIN_LIMIT
 from tcs_hil.canbus.stamps import RealtimeStamps
 
@@ -35,11 +36,14 @@ class SocketLink:
     Documentation/networking/can.rst, socket(7).
     """
 
-    def __init__(self, can_socket: socket.socket, counters: PortCounters) -> None:
+    def __init__(
+        self, can_socket: socket.socket, counters: PortCounters, health: BusHealth
+    ) -> None:
         can_socket.setsockopt(socket.SOL_SOCKET, constants.SO_TIMESTAMPNS, 1)
         can_socket.setsockopt(socket.SOL_SOCKET, SO_RXQ_OVFL, 1)
         self._socket = can_socket
         self._counters = counters
+        self._health = health
         self._stamps = RealtimeStamps()
         self._lost = 0
 
@@ -74,7 +78,11 @@ class SocketLink:
         )
         realtime_ns = self._read(ancillary)
         flags_and_id, length, data = PACKET.unpack(packet)
-        if self._is_ours(flags_and_id):
+        if flags_and_id & constants.CAN_ERR_FLAG:
+            self._counters.error_frames += 1
+            self._health.error_frame(flags_and_id & constants.MSK_ARBID, data[:length])
+        elif self._is_ours(flags_and_id):
+            self._health.heard()
             stamp_ns = self._stamps.moved_ns(realtime_ns)
             frames.append(Frame(flags_and_id & ID_MASK, data[:length], stamp_ns))
 
@@ -88,14 +96,14 @@ class SocketLink:
             elif kind == SO_RXQ_OVFL:
                 (lost,) = DROP_COUNT.unpack(value)
                 # The kernel counts in 32 bits since the socket was made; the port for ever.
-                self._counters.lost += (lost - self._lost) & UINT32_MASK
-                self._lost = lost
+                if lost != self._lost:
+                    self._counters.lost += (lost - self._lost) & UINT32_MASK
+                    self._lost = lost
+                    self._health.overflowed()
         return time.time_ns() if realtime_ns is None else realtime_ns
 
     def _is_ours(self, flags_and_id: int) -> bool:
-        if flags_and_id & constants.CAN_ERR_FLAG:
-            self._counters.error_frames += 1
-        elif flags_and_id & constants.CAN_RTR_FLAG:
+        if flags_and_id & constants.CAN_RTR_FLAG:
             self._counters.remote_frames += 1
         elif flags_and_id & constants.CAN_EFF_FLAG:
             self._counters.dropped += 1

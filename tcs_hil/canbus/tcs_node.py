@@ -7,9 +7,9 @@ import math
 from tcs_hil.canbus.ceiling import ceiling_codes
 from tcs_hil.canbus.contract import TCS
 from tcs_hil.canbus.database import Database
-from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox
+from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox, WatchedMailbox
 from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
-from tcs_hil.signals import Command, Measurement, RoadEstimate
+from tcs_hil.signals import BusCondition, Command, Measurement, RoadEstimate
 
 MS_PER_S = 1e3
 
@@ -23,15 +23,16 @@ class TcsNode:
 
     def __init__(self, database: Database) -> None:
         messages = database.messages
-        self._front = Mailbox(messages["WheelSpeedsFront"], (0.0, 0.0, 0, 0))
-        self._rear = Mailbox(messages["WheelSpeedsRear"], (0.0, 0.0, 0, 0, 0.0, 0))
-        self._motor = Mailbox(messages["MotorState"], (0.0, 0.0, 0.0, 0.0))
-        self._driver = Mailbox(messages["DriverRequest"], (0.0, 0.0))
+        self._front = WatchedMailbox(messages["WheelSpeedsFront"], (0.0, 0.0, 0, 0))
+        self._rear = WatchedMailbox(messages["WheelSpeedsRear"], (0.0, 0.0, 0, 0, 0.0, 0))
+        self._motor = WatchedMailbox(messages["MotorState"], (0.0, 0.0, 0.0, 0.0))
+        self._driver = WatchedMailbox(messages["DriverRequest"], (0.0, 0.0))
         self._bench = Mailbox(messages["BenchTick"], (0,))
         self._inbox = Inbox(
             [self._front, self._rear, self._motor, self._driver, self._bench],
             own_ids=database.frame_ids_of(TCS),
         )
+        self._own_ids_heard = 0
         self._limit = Outbox(messages["TorqueLimit"])
         self._status = Outbox(messages["TcsStatus"])
         self._estimates = Outbox(messages["TcsEstimates"])
@@ -59,8 +60,11 @@ class TcsNode:
         """Take one frame; True if it was good and its values are now the newest."""
         return self._inbox.feed(frame_id, data, stamp_ns)
 
-    def measurement(self, now_ns: int) -> Measurement:
-        """Newest value of every input and its age at ``now_ns``."""
+    def measurement(self, now_ns: int, bus: BusCondition = BusCondition.OK) -> Measurement:
+        """Newest value of every input, its age and state at ``now_ns``, and the bus's condition.
+
+        The condition is the worse of what the caller saw and of what the frames told.
+        """
         fl, fr, fl_valid, fr_valid = self._front.values
         rl, rr, rl_valid, rr_valid, accel, accel_valid = self._rear.values
         motor_left, motor_right, torque_left, torque_right = self._motor.values
@@ -76,6 +80,11 @@ class TcsNode:
             rear_speed_age_s=self._rear.age_s(now_ns),
             motor_age_s=self._motor.age_s(now_ns),
             driver_age_s=self._driver.age_s(now_ns),
+            front_speed_state=self._front.state(now_ns),
+            rear_speed_state=self._rear.state(now_ns),
+            motor_state=self._motor.state(now_ns),
+            driver_state=self._driver.state(now_ns),
+            bus=max(bus, self._intrusion()),
         )
 
     def frames(self, command: Command, now_ns: int, tick_overruns: int = 0) -> list[OutgoingFrame]:
@@ -95,6 +104,11 @@ class TcsNode:
     def bench_tick_done(self, tick: int) -> OutgoingFrame:
         """Tell the bench, in lockstep, that everything of this tick has been sent."""
         return self._bench_done.frame(tick)
+
+    def _intrusion(self) -> BusCondition:
+        """Whether an identifier of ours was heard from somebody else since the last call."""
+        heard, self._own_ids_heard = self._own_ids_heard, self.counters.own_id
+        return BusCondition.INTRUDER if self._own_ids_heard > heard else BusCondition.OK
 
     def _limit_frame(self, command: Command) -> OutgoingFrame:
         left, right = self._ceilings

@@ -8,8 +8,19 @@ import can
 import pytest
 
 from tcs_hil.canbus.port import CanPort, Frame
+from tcs_hil.signals import BusCondition
 
 PATIENCE_S = 5.0
+
+
+def error_frame(error_class: int, data: bytes = bytes(8)) -> can.Message:
+    """What a CAN controller's driver would put among the frames; a virtual bus carries it too."""
+    return can.Message(
+        arbitration_id=error_class,
+        data=data.ljust(8, b"\0"),
+        is_error_frame=True,
+        is_extended_id=False,
+    )
 
 
 def collect(port: CanPort, count: int) -> list[Frame]:
@@ -101,6 +112,26 @@ class BackToBack:
         assert [frame.data for frame in collect(right, 1)] == [b"ok"]
         assert getattr(right.counters, counter) == 1
         assert right.counters.rx == 1
+
+    def test_error_frames_tell_the_condition_of_the_bus(self, right, stranger):
+        for message, condition in (
+            (error_frame(0x004, b"\0\x30"), BusCondition.ERROR_PASSIVE),
+            (error_frame(0x040), BusCondition.BUS_OFF),
+        ):
+            stranger.send(message)
+            assert right.wait(PATIENCE_S)
+            assert right.receive() == []
+            assert [right.condition(), right.condition()] == [condition] * 2
+        stranger.send(error_frame(0x100))
+        assert right.wait(PATIENCE_S)
+        assert right.receive() == []
+        assert right.condition() is BusCondition.OK
+        assert right.counters.error_frames == 3
+
+    def test_who_uses_the_identifier_of_another_is_heard_by_him(self, left, stranger):
+        assert left.send(0x90, b"mine")
+        stranger.send(can.Message(arbitration_id=0x90, data=b"not mine", is_extended_id=False))
+        assert [frame.data for frame in collect(left, 1)] == [b"not mine"]
 
     def test_filters_mean_what_they_mean_in_python_can(self, left, stranger):
         stranger.set_filters([{"can_id": 0x90, "can_mask": 0x7FF, "extended": False}])

@@ -8,6 +8,7 @@ import pytest
 
 from tcs_hil.canbus.bus_load import bus_load_ratio, worst_case_bits
 from tcs_hil.canbus.database import DBC_ENCODING, load_database
+from tcs_hil.canbus.e2e_state import Threshold, WindowSpec
 from tcs_hil.errors import DatabaseError
 
 GOOD = Path("dbc/tcs.dbc").read_text(encoding=DBC_ENCODING)
@@ -34,6 +35,21 @@ def test_a_message_carries_its_frame_cycle_and_protection():
     assert rear.e2e.data_ids == bytes.fromhex("A24FE3087C95D61B32A95E80C4176DFA")
     assert rear.e2e.max_delta_counter == 10
     assert load_database().messages["TcsStatus"].e2e is None
+
+
+def test_a_message_carries_the_window_of_its_state_machine():
+    messages = load_database().messages
+    ten = Threshold(min_ok=10, max_error=10)
+    assert messages["WheelSpeedsRear"].window == WindowSpec(
+        24, Threshold(min_ok=5, max_error=2), Threshold(min_ok=5, max_error=10), ten
+    )
+    # The driver's request comes every 10 ms: with as many frames the car would wait for long.
+    assert messages["DriverRequest"].window == WindowSpec(
+        24,
+        Threshold(min_ok=1, max_error=2),
+        Threshold(min_ok=1, max_error=10),
+        Threshold(min_ok=2, max_error=10),
+    )
 
 
 def test_the_two_nodes_share_out_the_identifiers():
@@ -149,6 +165,36 @@ REFUSED = {
         "",
         "message WheelSpeedsFront needs the attribute E2EMaxDeltaCounter in 1 to 14",
     ),
+    "the window is unknown": (
+        'BA_DEF_ BO_  "E2EWindowSize" INT 0 64;\n',
+        "",
+        "message TorqueLimit needs the attribute E2EWindowSize in 1 to 64",
+    ),
+    "the window is too long": (
+        'BA_DEF_DEF_  "E2EWindowSize" 24;',
+        'BA_DEF_DEF_  "E2EWindowSize" 65;',
+        "message TorqueLimit needs the attribute E2EWindowSize in 1 to 64",
+    ),
+    "no good frame at all makes a message valid": (
+        'BA_ "E2EMinOkInit" BO_ 152 1;',
+        'BA_ "E2EMinOkInit" BO_ 152 0;',
+        "message DriverRequest needs the attribute E2EMinOkInit in 1 to 24",
+    ),
+    "more errors are tolerated than there are frames": (
+        'BA_DEF_DEF_  "E2EMaxErrorValid" 10;',
+        'BA_DEF_DEF_  "E2EMaxErrorValid" 25;',
+        "message TorqueLimit needs the attribute E2EMaxErrorValid in 0 to 24",
+    ),
+    "valid does not outlast init": (
+        'BA_ "E2EMinOkValid" BO_ 152 1;',
+        'BA_ "E2EMinOkValid" BO_ 152 2;',
+        "message DriverRequest has an E2EMinOkInit below its E2EMinOkValid",
+    ),
+    "valid does not outlast invalid": (
+        'BA_DEF_DEF_  "E2EMaxErrorInvalid" 10;',
+        'BA_DEF_DEF_  "E2EMaxErrorInvalid" 11;',
+        "message TorqueLimit has an E2EMaxErrorInvalid above its E2EMaxErrorValid",
+    ),
     "the crc is elsewhere": (
         "SG_ DriverRequestCrc : 0|8@1+",
         "SG_ DriverRequestCrc : 0|7@1+",
@@ -183,11 +229,12 @@ def test_a_database_is_refused_where(tmp_path, case):
     assert expected in refusal(tmp_path, text)
 
 
-# Renaming a message or signal takes its comments along.
+# Renaming a message or signal takes its comments along, and an attribute its default.
 RENAMED = {
     "a signal is missing": (" WheelSpeedRL ", " WheelSpeedHL "),
     "the counter is missing": (" DriverRequestCounter ", " DriverRequestCount "),
     "the identifier is extended": (" 2032 ", " 2147485680 "),
+    "the window is unknown": ('BA_DEF_DEF_  "E2EWindowSize" 24;\n', ""),
     "two messages share an identifier": (" 2033 ", " 2032 "),
 }
 

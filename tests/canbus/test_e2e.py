@@ -25,10 +25,6 @@ def verdicts(payloads, spec=SPEC):
     return [checker.check(payload) for payload in payloads]
 
 
-def test_nothing_is_said_before_the_first_frame():
-    assert Checker(SPEC).status is E2EStatus.NONE
-
-
 def test_the_first_frame_is_good_whatever_its_counter():
     assert verdicts(frames(7)[6:]) == [E2EStatus.OK]
 
@@ -70,6 +66,17 @@ def test_after_a_jump_the_next_frame_in_order_is_good():
         E2EStatus.WRONG_SEQUENCE,
         E2EStatus.OK,
     ]
+
+
+@pytest.mark.parametrize("counter", range(16))
+def test_a_sender_that_starts_anew_costs_one_frame_at_most(counter):
+    before, after = frames(counter + 1), frames(20)
+    assert set(verdicts(before + after)[counter + 2 :]) == {E2EStatus.OK}
+
+
+def test_a_bad_frame_does_not_hide_how_far_the_counter_has_moved():
+    sent = frames(12)
+    assert verdicts([sent[0], bytes(8), sent[11]])[-1] is E2EStatus.WRONG_SEQUENCE
 
 
 def test_a_frame_of_another_message_is_an_error():

@@ -145,8 +145,7 @@ def test_a_full_reader_loses_frames_alone_and_they_are_counted(open_bus):
     sender, lazy = open_bus(), open_bus()
     count = fill(sender)
     eager = open_bus()
-    with pytest.raises(can.CanTimeoutError, match="1 readers"):
-        sender.send(message(b"more"), timeout=0)
+    sender.send(message(b"more"), timeout=0)  # not refused: somebody has it
     assert eager.recv(1.0).data == b"more"
     assert sender.dropped == 2
     heard = [lazy.recv(0.0) for _ in range(count + 1)]

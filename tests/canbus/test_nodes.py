@@ -14,7 +14,15 @@ from tcs_hil.canbus.e2e import Protector
 from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
-from tcs_hil.signals import NO_LIMIT, Command, ControllerKind, TcsState, TorqueLimits
+from tcs_hil.signals import (
+    NO_LIMIT,
+    BusCondition,
+    Command,
+    ControllerKind,
+    InputState,
+    TcsState,
+    TorqueLimits,
+)
 
 DATABASE = load_database()
 MS = 1_000_000
@@ -97,6 +105,72 @@ def test_each_source_has_its_own_age(service, vehicle):
 def test_a_frame_stamped_after_the_tick_is_of_age_zero(service, vehicle):
     hand_over(vehicle.frames(SIGNALS, 0), service, stamp_ns=5)
     assert service.measurement(0).motor_age_s == 0.0
+
+
+def states(seen):
+    return (seen.front_speed_state, seen.rear_speed_state, seen.motor_state, seen.driver_state)
+
+
+def test_each_message_has_its_own_state(service, vehicle):
+    assert states(service.measurement(0)) == (InputState.NO_DATA,) * 4
+    for tick in range(20):
+        now_ns = tick * 2 * MS
+        frames = vehicle.frames(SIGNALS, now_ns)
+        hand_over([f for f in frames if tick < 8 or f[0] != MOTOR], service, now_ns)
+        seen = service.measurement(now_ns)
+    assert states(seen) == (InputState.VALID,) * 4
+    for tick in range(20, 50):
+        now_ns = tick * 2 * MS
+        frames = vehicle.frames(SIGNALS, now_ns)
+        hand_over([f for f in frames if f[0] in (FRONT, DRIVER)], service, now_ns)
+        if tick >= 45:
+            service.feed(REAR, b"short", now_ns)
+        seen = service.measurement(now_ns)
+    assert states(seen) == (
+        InputState.VALID,
+        InputState.INVALID,
+        InputState.INVALID,
+        InputState.VALID,
+    )
+
+
+def test_a_frame_of_the_wrong_length_is_an_error_of_its_message(service, vehicle):
+    for tick in range(10):
+        hand_over(vehicle.frames(SIGNALS, tick * 2 * MS), service, tick * 2 * MS)
+    for tick in range(10, 21):
+        assert service.measurement(tick * 2 * MS).motor_state is InputState.VALID
+        assert not service.feed(MOTOR, b"", tick * 2 * MS)
+    assert service.measurement(20 * 2 * MS).motor_state is InputState.INVALID
+
+
+@pytest.mark.parametrize("counter", range(1, 16))
+def test_a_vehicle_that_starts_anew_is_heard_with_its_second_frame_and_stays_valid(
+    service, counter
+):
+    vehicle = VehicleNode(DATABASE)
+    for tick in range(15 + counter):
+        hand_over(vehicle.frames(SIGNALS, tick * 2 * MS), service, tick * 2 * MS)
+    vehicle = VehicleNode(DATABASE)
+    for tick in range(15 + counter, 60):
+        now_ns = tick * 2 * MS
+        good = hand_over(vehicle.frames(SIGNALS, now_ns), service, now_ns)
+        assert all(good) or tick <= 15 + counter + 5  # the driver's second frame comes after 10 ms
+        assert states(service.measurement(now_ns)) == (InputState.VALID,) * 4
+
+
+def test_our_own_identifier_from_somebody_else_is_an_intruder_until_the_next_tick(service):
+    assert service.measurement(0).bus is BusCondition.OK
+    service.feed(TORQUE_LIMIT, bytes(6), 0)
+    assert service.measurement(0).bus is BusCondition.INTRUDER
+    assert service.measurement(0).bus is BusCondition.OK
+    service.feed(STATUS, b"", 0)
+    service.feed(STATUS, b"", 0)
+    assert service.measurement(0, BusCondition.BUS_OFF).bus is BusCondition.INTRUDER
+
+
+def test_what_the_port_has_seen_of_the_bus_is_passed_on(service):
+    service.feed(0x123, b"", 0)
+    assert service.measurement(0, BusCondition.DOWN).bus is BusCondition.DOWN
 
 
 def test_every_bad_frame_is_counted_by_its_kind(service, vehicle):

@@ -12,6 +12,7 @@ import pytest
 
 from tcs_hil.canbus.port import DRAIN_LIMIT, CanPort, PortCounters, open_port
 from tcs_hil.errors import BusError
+from tcs_hil.signals import BusCondition
 
 
 class ScriptedBus(can.BusABC):
@@ -154,6 +155,43 @@ def test_without_a_way_to_reopen_the_port_goes_on_counting():
     port = CanPort(ScriptedBus(*[operation_error(errno.ENODEV)] * 3))
     assert [port.receive() for _ in range(3)] == [[], [], []]
     assert port.counters.rx_errors == 3
+
+
+@pytest.mark.parametrize(
+    ("code", "condition"),
+    [
+        (errno.ENOBUFS, BusCondition.SEND_FAILED),
+        (None, BusCondition.SEND_FAILED),
+        (errno.ENETDOWN, BusCondition.DOWN),
+        (errno.ENODEV, BusCondition.DOWN),
+        (errno.ENXIO, BusCondition.DOWN),
+    ],
+)
+def test_a_send_that_failed_is_a_condition_of_the_bus(code, condition):
+    port = CanPort(ScriptedBus(send_error=operation_error(code)))
+    assert port.condition() is BusCondition.OK
+    port.send(0x90, b"")
+    assert port.condition() is condition
+
+
+def test_a_link_found_down_while_receiving_is_down_until_a_frame_could_be_sent():
+    port = CanPort(ScriptedBus(operation_error(errno.ENETDOWN)))
+    port.receive()
+    assert [port.condition(), port.condition()] == [BusCondition.DOWN] * 2
+    port.send(0x90, b"")
+    assert port.condition() is BusCondition.OK
+
+
+def test_an_odd_error_while_receiving_is_no_condition_as_late_inputs_speak_for_it():
+    port = CanPort(ScriptedBus(OSError(errno.EIO, "odd")))
+    port.receive()
+    assert port.condition() is BusCondition.OK
+
+
+def test_error_frames_of_an_interface_with_a_language_of_its_own_are_only_counted():
+    port = CanPort(ScriptedBus(message(bytes(8), arbitration_id=0x040, is_error_frame=True)))
+    port.receive()
+    assert (port.condition(), port.counters.error_frames) == (BusCondition.OK, 1)
 
 
 def test_a_port_is_opened_like_a_bus():

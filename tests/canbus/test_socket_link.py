@@ -10,8 +10,10 @@ import pytest
 from can.interfaces.socketcan import constants
 
 from tcs_hil.canbus.frame import Frame, PortCounters
+from tcs_hil.canbus.health import BusHealth
 from tcs_hil.canbus.link import DRAIN_LIMIT
 from tcs_hil.canbus.socket_link import PACKET, SocketLink
+from tcs_hil.signals import BusCondition
 
 
 class Wire:
@@ -20,7 +22,8 @@ class Wire:
     def __init__(self, near: socket.socket, far: socket.socket) -> None:
         self.near, self.far = near, far
         self.counters = PortCounters()
-        self.link = SocketLink(near, self.counters)
+        self.health = BusHealth()
+        self.link = SocketLink(near, self.counters, self.health)
 
     def hear(self, flags_and_id: int, data: bytes = b"") -> None:
         self.far.send(PACKET.pack(flags_and_id, len(data), data))
@@ -77,6 +80,17 @@ def test_frames_nobody_speaks_are_counted_by_kind(wire):
     assert wire.counters == PortCounters(rx=1, error_frames=1, remote_frames=1, dropped=1)
 
 
+def test_error_frames_are_read_and_any_frame_is_survived(wire):
+    wire.hear(0xFFFF_FFFF)  # an error frame of every class at once
+    wire.far.send(PACKET.pack(0x90, 255, b"longer?!"))
+    assert [frame.data for frame in wire.drained()] == [b"longer?!"]
+    # Who hears is not off the bus.
+    assert [wire.health.condition(), wire.health.condition()] == [
+        BusCondition.BUS_OFF,
+        BusCondition.OK,
+    ]
+
+
 def test_a_babbling_node_is_cut_off_until_the_next_drain(wire):
     wire.near.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
     for _ in range(DRAIN_LIMIT + 10):
@@ -96,6 +110,10 @@ def test_what_the_kernel_had_no_room_for_is_counted(wire):
     wire.drained()
     assert received < sent
     assert wire.counters.lost == sent - received
+    assert [wire.health.condition(), wire.health.condition()] == [
+        BusCondition.OVERFLOW,
+        BusCondition.OK,
+    ]
 
 
 def test_losses_add_up_over_several_floods(wire):
@@ -123,7 +141,7 @@ def test_waiting_ends_with_the_frame_or_with_the_time(wire):
 def test_a_full_socket_is_waited_for_as_long_as_allowed():
     near, far = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
     with near, far:
-        link = SocketLink(near, PortCounters())
+        link = SocketLink(near, PortCounters(), BusHealth())
         far.setblocking(False)
         with pytest.raises(BlockingIOError):
             fill(link)

@@ -1,4 +1,4 @@
-"""Time of a step of each published law along both manoeuvres, beside the paper's own figures.
+"""Time of a step of each law along both manoeuvres, native and in Python, beside the paper's own.
 
     python -m benchmarks.controllers                    a table
     python -m benchmarks.controllers --json > out.json  the same, for programs
@@ -25,6 +25,7 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
+from tcs_hil.control.backend import Backend, chosen_backend
 from tcs_hil.control.factory import make_controller
 from tcs_hil.control.protocol import Controller, Proposal, WheelState
 from tcs_hil.control.settings import ControlSettings
@@ -93,6 +94,7 @@ class Row:
     """One controller along one manoeuvre."""
 
     controller: str
+    backend: str
     manoeuvre: str
     steps: int
     wall: Statistics
@@ -101,20 +103,40 @@ class Row:
     paper_max_us: float | None
 
 
-def measure(kind: ControllerKind, manoeuvre: str, predictor: KoopmanPredictor, runs: int) -> Row:
+@dataclass(frozen=True)
+class Law:
+    """A law and the code that runs it."""
+
+    kind: ControllerKind
+    backend: Backend
+
+    def make(self, predictor: KoopmanPredictor) -> Controller:
+        """A fresh controller."""
+        settings = ControlSettings(preset="paper", backend=self.backend)
+        return make_controller(self.kind, settings, Vehicle(), predictor)
+
+
+def measure(law: Law, manoeuvre: str, predictor: KoopmanPredictor, runs: int) -> Row:
     """Drive the manoeuvre ``runs`` times, each from a fresh controller."""
     wall_ns: list[int] = []
     cpu_ns: list[int] = []
     for _ in range(runs):
-        watch = Stopwatch(
-            make_controller(kind, ControlSettings(preset="paper"), Vehicle(), predictor)
-        )
+        watch = Stopwatch(law.make(predictor))
         MANOEUVRES[manoeuvre](watch)
         wall_ns += watch.wall_ns
         cpu_ns += watch.cpu_ns
-    paper = PAPER_US.get((kind.name, manoeuvre), (None, None))
+    paper = PAPER_US.get((law.kind.name, manoeuvre), (None, None))
     wall, cpu = Statistics.of(wall_ns), Statistics.of(cpu_ns)
-    return Row(kind.name, manoeuvre, len(wall_ns), wall, cpu, *paper)
+    return Row(law.kind.name, law.backend, manoeuvre, len(wall_ns), wall, cpu, *paper)
+
+
+def laws() -> list[Law]:
+    """Every law in Python, and native where that exists."""
+    settings = ControlSettings(preset="paper")
+    chosen = ((kind, chosen_backend(kind, settings)) for kind in ControllerKind)
+    return [
+        Law(kind, backend) for kind, best in chosen for backend in dict.fromkeys((best, "python"))
+    ]
 
 
 def machine() -> str:
@@ -127,20 +149,21 @@ def machine() -> str:
 
 
 def as_table(rows: list[Row]) -> Table:
-    """Rows for people: wall time in full, CPU time by mean and p99, the paper's by mean and max."""
+    """Rows for people: wall time in full, CPU time by p50 and p99, the paper's by mean and max."""
     table = Table(
         title=f"Controller step in µs, {machine()}", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0)
     )
-    for heading in ("law", "mu"):
+    for heading in ("law", "code", "mu"):
         table.add_column(heading, no_wrap=True)
-    for heading in ("mean", "p50", "p99", "max", "CPU", "CPU p99", "paper"):
+    for heading in ("mean", "p50", "p99", "max", "CPU p50", "CPU p99", "paper"):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
         wall, cpu = row.wall, row.cpu
-        figures = (wall.mean_us, wall.p50_us, wall.p99_us, wall.max_us, cpu.mean_us, cpu.p99_us)
+        figures = (wall.mean_us, wall.p50_us, wall.p99_us, wall.max_us, cpu.p50_us, cpu.p99_us)
         known = row.paper_mean_us is not None
         paper = f"{row.paper_mean_us:g}/{row.paper_max_us:g}" if known else "-"
-        table.add_row(row.controller, row.manoeuvre, *(f"{x:.1f}" for x in figures), paper)
+        names = (row.controller, row.backend, row.manoeuvre)
+        table.add_row(*names, *(f"{x:.2f}" if x < 1.0 else f"{x:.1f}" for x in figures), paper)
     return table
 
 
@@ -150,10 +173,10 @@ def as_table(rows: list[Row]) -> Table:
 def main(runs: int, as_json: bool) -> None:
     """Time every controller along both manoeuvres of the paper."""
     predictor = KoopmanPredictor.load(default_model_path(), ControlSettings().period_s)
-    work = [(kind, name) for kind in ControllerKind for name in MANOEUVRES]
+    work = [(law, name) for law in laws() for name in MANOEUVRES]
     gc.disable()  # as the service does in its loop
     progress = track(work, "measuring", console=Console(stderr=True), transient=True)
-    rows = [measure(kind, name, predictor, runs) for kind, name in progress]
+    rows = [measure(law, name, predictor, runs) for law, name in progress]
     if as_json:
         click.echo(json.dumps({"machine": machine(), "rows": [asdict(row) for row in rows]}))
     else:

@@ -65,4 +65,4 @@ class CompensatedController:
             return Proposal(torque_ref_nm, plan.status, plan.iterations)
         torque_nm = clamp(float(plan.inputs[0]), torque_ref_nm)
         self._integral.advance(wheel.slip_ratio, torque_nm, torque_ref_nm)
-        return Proposal(torque_nm, plan.status, plan.iterations)
+        return Proposal(torque_nm, plan.status, plan.iterations, plan.next_nm)

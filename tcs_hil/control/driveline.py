@@ -22,6 +22,6 @@ class Driveline(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     wheel_inertia_kgm2: Positive = 0.95
     motor_inertia_kgm2: Positive = 0.27
     shaft_stiffness_nmprad: Positive = 6000.0
-    shaft_damping_nmsprad: Annotated[float, msgspec.Meta(ge=0.0)] = 25.0
-    motor_lag_s: Annotated[float, msgspec.Meta(ge=0.001)] = 0.005
-    tyre_relaxation_m: Annotated[float, msgspec.Meta(ge=0.05)] = 0.05
+    shaft_damping_nmsprad: Annotated[float, msgspec.Meta(ge=0.0, le=1e6)] = 25.0
+    motor_lag_s: Annotated[float, msgspec.Meta(ge=0.001, le=1.0)] = 0.005
+    tyre_relaxation_m: Annotated[float, msgspec.Meta(ge=0.05, le=10.0)] = 0.05

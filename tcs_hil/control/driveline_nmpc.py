@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.control.compensated import CompensatedController
-from tcs_hil.control.driveline_transcription import NX, advance_function, plan_function
+from tcs_hil.control.driveline_core import Situation, driveline_core
 from tcs_hil.control.force_disturbance import ForceDisturbance
 from tcs_hil.control.integrator import BoundedIntegral
-from tcs_hil.control.least_squares import Linearisation
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
-from tcs_hil.control.sqp import minimise
 from tcs_hil.model.vehicle import Vehicle
 
 FloatArray = NDArray[np.float64]
@@ -25,17 +22,15 @@ SLOWEST_MPS = 0.2
 
 
 class DrivelineOptimiser:
-    """Gauss-Newton SQP, warm from the last plan, shifted by the period that has passed."""
+    """Knows the state of the driveline and the surplus force; its core predicts and plans."""
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
         self._vehicle = vehicle
         self._driveline = settings.default.driveline
         self._tuning = settings.default.nmpc
         self._period_s = settings.period_s
-        self._problem = Linearisation(plan_function(settings, vehicle))
-        self._flow = Flow(advance_function(settings, vehicle))
+        self._core = driveline_core(settings, vehicle)
         self._disturbance = ForceDisturbance(settings, vehicle)
-        self._guess = np.zeros(len(self._tuning.blocks))  # (N,), Nm
 
     def state(self, wheel: WheelState, integral_s: float) -> FloatArray:
         """State x (7,) at the instant ``wheel`` describes."""
@@ -57,16 +52,13 @@ class DrivelineOptimiser:
     def advance(self, state: FloatArray, torque_nm: float, periods: float) -> FloatArray:
         """State (7,) after ``periods`` periods of a commanded motor torque."""
         duration_s = periods * self._period_s
-        return self._flow.after(state, torque_nm, duration_s, self._disturbance.value_n)
+        return self._core.after(state, torque_nm, duration_s, self._disturbance.value_n)
 
     def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm within [0, torque_ref_nm]."""
         disturbance_n, urgency = self._disturbance.value_n, self._urgency(state)
-        self._problem.start_from(state, torque_ref_nm, last_torque_nm, disturbance_n, urgency)
-        feasible = np.minimum(self._guess, torque_ref_nm)
-        plan = minimise(self._problem, feasible, torque_ref_nm, self._tuning.max_iterations)
-        self._guess = np.append(plan.inputs[1:], plan.inputs[-1])
-        return plan
+        situation = Situation(torque_ref_nm, last_torque_nm, disturbance_n, urgency)
+        return self._core.plan(state, situation)
 
     def _urgency(self, state: FloatArray) -> float:
         """Factor on the slip's residuals: 1, less below the soft speed, where slip is touchy."""
@@ -76,7 +68,7 @@ class DrivelineOptimiser:
 
     def reset(self) -> None:
         """Forget the last plan and the disturbance."""
-        self._guess = np.zeros_like(self._guess)
+        self._core.reset()
         self._disturbance.reset()
 
 
@@ -85,28 +77,8 @@ def _or_else(value: float, steady: float) -> float:
     return value if math.isfinite(value) else steady
 
 
-class Flow:
-    """The prediction model on preallocated memory."""
-
-    def __init__(self, function: Any) -> None:
-        self._x, self._parameters, self._after = np.zeros(NX), np.zeros(3), np.zeros(NX)
-        self._buffer, self._evaluate = function.buffer()
-        self._buffer.set_arg(0, self._x.data)
-        self._buffer.set_arg(1, self._parameters.data)
-        self._buffer.set_res(0, self._after.data)
-
-    def after(
-        self, state: FloatArray, torque_nm: float, duration_s: float, disturbance_n: float
-    ) -> FloatArray:
-        """State (7,) after a duration; valid until the next call."""
-        self._x[:] = state
-        self._parameters[:] = torque_nm, duration_s, disturbance_n
-        self._evaluate()
-        return self._after
-
-
 def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedController:
-    """One wheel's default NMPC; the first call builds CasADi's functions."""
+    """One wheel's default NMPC; the first call may build CasADi's functions."""
     return CompensatedController(
         DrivelineOptimiser(settings, vehicle),
         BoundedIntegral(

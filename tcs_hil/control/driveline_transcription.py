@@ -47,7 +47,7 @@ def plan_function(settings: ControlSettings, vehicle: Vehicle) -> Any:
     )
     for torque, periods in zip(ca.vertsplit(plan), tuning.blocks, strict=True):
         duration_s = periods * settings.period_s
-        x = _advance(x, torque, duration_s, force_disturbance, settings, vehicle)
+        x = advance(x, torque, duration_s, force_disturbance, settings, vehicle)
         error = settings.slip_reference - slip_ratio(x[0], x[1], vehicle)
         held = math.sqrt(periods)
         tracking = held * urgency
@@ -62,11 +62,11 @@ def advance_function(settings: ControlSettings, vehicle: Vehicle) -> Any:
     """CasADi function (x (7,), [u, duration in s, dF]) -> x after the duration."""
     x, parameters = ca.SX.sym("x", NX), ca.SX.sym("p", 3)
     torque, duration, force_disturbance = ca.vertsplit(parameters)
-    after = _advance(x, torque, duration, force_disturbance, settings, vehicle)
+    after = advance(x, torque, duration, force_disturbance, settings, vehicle)
     return ca.Function("advance", [x, parameters], [after], {"cse": True})
 
 
-def _advance(
+def advance(
     x: Any,
     torque_nm: Any,
     duration_s: Any,
@@ -74,6 +74,7 @@ def _advance(
     settings: ControlSettings,
     car: Vehicle,
 ) -> Any:
+    """State (7,) after at most 4 ms of a commanded motor torque."""
     line, radius_m = settings.default.driveline, car.wheel_radius_m
 
     def rate(state: Any) -> Any:

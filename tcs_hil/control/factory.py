@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tcs_hil.control.backend import Backend, chosen_backend
 from tcs_hil.control.off import OffController
 from tcs_hil.control.pi import PiController
 from tcs_hil.control.protocol import Controller
@@ -23,31 +24,39 @@ def make_controller(
 
     The preset ``paper`` takes a single one, ``default`` a bank.
 
-    Solvers are imported where they are used: a service that runs the PI loads
-    neither OSQP nor CasADi.  Raises ConfigError for a predictor that is missing
-    or made for another period.
+    Solvers are imported where they are used: a service that runs the PI, or a
+    native step, loads neither OSQP nor CasADi.  Raises ConfigError for a predictor
+    that is missing or made for another period, and for a native step that is asked
+    for and does not exist.
     """
+    backend = chosen_backend(kind, settings)
     if kind is ControllerKind.OFF:
         return OffController()
     if kind is ControllerKind.PI:
         return PiController(settings)
     if kind is ControllerKind.NMPC:
-        return _nonlinear(settings, vehicle)
-    return _koopman(settings, predictor)
+        return _nonlinear(settings, vehicle, backend)
+    return _koopman(settings, predictor, backend)
 
 
-def _nonlinear(settings: ControlSettings, vehicle: Vehicle) -> Controller:
+def _nonlinear(settings: ControlSettings, vehicle: Vehicle, backend: Backend) -> Controller:
     if settings.preset == "default":
         from tcs_hil.control.driveline_nmpc import driveline_mpc  # noqa: PLC0415
 
         return driveline_mpc(settings, vehicle)
+    if backend == "native":
+        from tcs_hil.control.native_nmpc import native_nonlinear_mpc  # noqa: PLC0415
+
+        return native_nonlinear_mpc(settings, vehicle)
     from tcs_hil.control.nmpc import nonlinear_mpc  # noqa: PLC0415
 
     return nonlinear_mpc(settings, vehicle)
 
 
 def _koopman(
-    settings: ControlSettings, predictor: KoopmanPredictor | KoopmanBank | None
+    settings: ControlSettings,
+    predictor: KoopmanPredictor | KoopmanBank | None,
+    backend: Backend,
 ) -> Controller:
     if predictor is None:
         raise ConfigError("controller KMPC needs a model file")
@@ -56,6 +65,10 @@ def _koopman(
 
         return bank_mpc(settings, predictor)
     if settings.preset == "paper" and isinstance(predictor, KoopmanPredictor):
+        if backend == "native":
+            from tcs_hil.control.native_kmpc import native_koopman_mpc  # noqa: PLC0415
+
+            return native_koopman_mpc(settings, predictor)
         from tcs_hil.control.kmpc import koopman_mpc  # noqa: PLC0415
 
         return koopman_mpc(settings, predictor)

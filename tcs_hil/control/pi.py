@@ -36,6 +36,12 @@ class PiController:
         self._integral_nm = clamp(integral_nm, torque_ref_nm)
         return Proposal(clamp(proportional_nm + self._integral_nm, torque_ref_nm))
 
+    def follow(self, wheel: WheelState, torque_nm: float, torque_ref_nm: float) -> None:
+        """Take on what another law has proposed, to go on from there without a bump."""
+        proportional_nm = self._gain_nm(wheel) * (self._slip_reference - wheel.slip_ratio)
+        self._integral_nm = clamp(torque_nm - proportional_nm, torque_ref_nm)
+        self._awake = torque_nm < torque_ref_nm
+
     def reset(self) -> None:
         """Forget the integral and sleep."""
         self._integral_nm = 0.0

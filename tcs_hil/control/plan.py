@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -21,3 +22,12 @@ class Plan(NamedTuple):
     inputs: FloatArray  # (N,)
     status: SolveStatus
     iterations: int
+
+    @property
+    def next_nm(self) -> float:
+        """Torque meant for the period after the coming one, NaN after ``FAILED``.
+
+        A horizon of one means the same torque again.
+        """
+        failed = self.status is SolveStatus.FAILED
+        return math.nan if failed else float(self.inputs[:2][-1])

@@ -37,7 +37,7 @@ class PredictiveController:
         plan = self._optimiser.plan(wheel, self._integral.value_s, torque_ref_nm)
         torque_nm = self._first_input(plan, torque_ref_nm)
         self._integral.advance(wheel.slip_ratio, torque_nm, torque_ref_nm)
-        return Proposal(torque_nm, plan.status, plan.iterations)
+        return Proposal(torque_nm, plan.status, plan.iterations, plan.next_nm)
 
     def reset(self) -> None:
         """Forget the integral and the last plan, as at start-up."""

@@ -1,4 +1,4 @@
-"""Box-constrained QP with a constant Hessian on OSQP: set up once, vectors updated per solve."""
+"""Box-constrained QP with a constant Hessian: OSQP finds the active bounds, they the solution."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import osqp
 from numpy.typing import NDArray
 from scipy import sparse
 
+from tcs_hil.control.active_set import ActiveSets, Sides
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import SolveStatus
 
@@ -26,6 +27,12 @@ _STATUS = {
 
 class OsqpBox:
     """Minimise x'Hx/2 + g'x over lower <= x_i <= upper, H (n, n) positive definite.
+
+    The active bounds of the last solution are tried first: they rarely change
+    from tick to tick, and while they hold the solution takes one product of a
+    matrix.  When they change OSQP finds the new ones.  Either way the result is
+    the one that belongs to the active bounds, exact to rounding; only where OSQP
+    leaves them in doubt it is OSQP's own.
 
     Four choices make OSQP both exact and quick here.  The objective is scaled
     to a largest eigenvalue of 1, because the tolerances are absolute.  The
@@ -51,6 +58,7 @@ class OsqpBox:
         penalty = math.sqrt(float(eigenvalues[0]) * self._scale)
         self._decided = 2.0 * math.sqrt(len(hessian))  # per unit of radius, with a margin of 2
         self._solver = _compiled_solver(hessian * self._scale, penalty, max_iterations, tolerance)
+        self._active_sets = ActiveSets(hessian, self._scale)
 
     def solve(self, gradient: FloatArray, lower: float, upper: float) -> Plan:
         """Solve for g (n,), warm from the last solution, which moves little between ticks.
@@ -58,27 +66,41 @@ class OsqpBox:
         The result lies in the box up to the tolerance.  Nothing is raised: a
         problem that is not finite, or a solver in trouble, is ``FAILED``.
         """
-        scaled = gradient * self._scale
-        size = float(scaled @ scaled)
-        if not math.isfinite(size + lower + upper):
+        inputs = self._active_sets.solve(gradient, lower, upper)
+        if inputs is not None:
+            return Plan(inputs, SolveStatus.OK, 0)
+        if not math.isfinite(float(gradient @ gradient) + lower + upper):
             return Plan(gradient, SolveStatus.FAILED, 0)
-        self._lower.fill(lower)
-        self._upper.fill(upper)
         if lower == upper:
-            return Plan(self._lower.copy(), SolveStatus.OK, 0)
-        limit = self._decided * max(abs(lower), abs(upper))
-        if size > limit * limit:
-            scaled = np.clip(scaled, -limit, limit)
-        self._solver.update_data_vec(q=scaled, l=self._lower, u=self._upper)
-        self._solver.solve()
-        info = self._solver.info
-        status = _STATUS.get(info.status_val, SolveStatus.FAILED)
-        return Plan(self._solver.solution.x, status, info.iter)
+            return Plan(np.full_like(gradient, lower), SolveStatus.OK, 0)
+        return self._search(gradient, lower, upper)
 
     def reset(self) -> None:
         """Forget the last solution: the next solve starts cold."""
         cold = np.zeros(len(self._lower))
         self._solver.warm_start(x=cold, y=cold)
+        self._active_sets.assume(None)
+
+    def _search(self, gradient: FloatArray, lower: float, upper: float) -> Plan:
+        """Solve by OSQP, then by the active bounds it has found."""
+        self._lower.fill(lower)
+        self._upper.fill(upper)
+        limit = self._decided * max(abs(lower), abs(upper))
+        scaled = np.clip(gradient * self._scale, -limit, limit)
+        self._solver.update_data_vec(q=scaled, l=self._lower, u=self._upper)
+        self._solver.solve()
+        info, inputs = self._solver.info, self._solver.solution.x
+        status = _STATUS.get(info.status_val, SolveStatus.FAILED)
+        if status is SolveStatus.OK:
+            self._active_sets.assume(self._found_sides(lower, upper))
+            exact = self._active_sets.solve(gradient, lower, upper)
+            inputs = inputs if exact is None else exact
+        return Plan(inputs, status, info.iter)
+
+    def _found_sides(self, lower: float, upper: float) -> Sides:
+        """A bound is active where its multiplier is larger than the distance to it."""
+        x, y = self._solver.solution.x, self._solver.solution.y
+        return tuple(((upper - x < y).astype(int) - (x - lower < -y)).tolist())
 
 
 def _compiled_solver(

@@ -8,9 +8,13 @@ import msgspec
 
 from tcs_hil.control.driveline import Driveline
 
-Weight = Annotated[float, msgspec.Meta(ge=0.0)]
-PositiveWeight = Annotated[float, msgspec.Meta(gt=0.0)]
+# Every bound is finite: TOML can say `inf`, and no law can follow it there.
+Weight = Annotated[float, msgspec.Meta(ge=0.0, le=1e12)]
+PositiveWeight = Annotated[float, msgspec.Meta(gt=0.0, le=1e12)]
+TimeConstant = Annotated[float, msgspec.Meta(gt=0.0, le=10.0)]
+Speed = Annotated[float, msgspec.Meta(gt=0.0, le=100.0)]
 PresetName = Literal["paper", "default"]
+BackendName = Literal["auto", "native", "python"]
 BlockPeriods = Annotated[int, msgspec.Meta(ge=1, le=2)]  # at most 4 ms: one Runge-Kutta step
 Horizon = Annotated[int, msgspec.Meta(ge=1, le=40)]
 
@@ -20,8 +24,8 @@ class PiSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
     gain_base_nm: PositiveWeight = 20.0
     gain_slope_nm_per_mps: Weight = 80.0
-    gain_speed_ceiling_mps: PositiveWeight = 15.0
-    integral_time_s: PositiveWeight = 0.05
+    gain_speed_ceiling_mps: Speed = 15.0
+    integral_time_s: TimeConstant = 0.05
     entry_ratio: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.8
     """Share of the slip reference at which the law takes over from the driver."""
 
@@ -66,8 +70,8 @@ class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     weight_reduction: PositiveWeight = 1.6e-7
     weight_change: PositiveWeight = 4e-2  # on (u_k - u_{k-1})²
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 2
-    observer_time_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.02  # of the force disturbance
-    soft_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 2.5
+    observer_time_s: TimeConstant = 0.02  # of the force disturbance
+    soft_speed_mps: Speed = 2.5
     """Below it slip answers torque so fast that its weights shrink with the speed squared."""
 
 
@@ -79,11 +83,11 @@ class BankKmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     weight_integral: Weight = 2e6
     weight_reduction: PositiveWeight = 1e-5
     weight_change: PositiveWeight = 5e-2  # on (u_k - u_{k-1})²
-    observer_time_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.03  # of the speed disturbance
+    observer_time_s: TimeConstant = 0.03  # of the speed disturbance
     online_update: bool = False  # of the predictor, by the grip observed
-    soft_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 4.0
+    soft_speed_mps: Speed = 4.0
     """Below it slip answers torque so fast that its weights shrink with the speed squared."""
-    integral_speed_mps: Annotated[float, msgspec.Meta(gt=0.0)] = 10.0
+    integral_speed_mps: Speed = 10.0
     """Above it the integral's weight shrinks with the speed squared: slip answers slowly there."""
 
 
@@ -103,7 +107,7 @@ class DefaultSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
 
     driveline: Driveline = Driveline()
     delay: DelaySettings = DelaySettings()
-    integral_limit_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.02
+    integral_limit_s: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.02
     pi: PiSettings = PiSettings(
         gain_base_nm=2.0, gain_slope_nm_per_mps=12.0, integral_time_s=0.015, entry_ratio=1.0
     )
@@ -115,10 +119,12 @@ class ControlSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     """What all laws share, once, and the tuning of each.
 
     ``pi``, ``kmpc`` and ``nmpc`` belong to the preset ``paper``, ``default`` to
-    the other.
+    the other.  ``backend`` is the code that runs them: with ``auto`` the native
+    step wherever it was built.
     """
 
     preset: PresetName = "default"
+    backend: BackendName = "auto"
     period_s: Annotated[float, msgspec.Meta(ge=1e-4, le=0.02)] = 0.002
     slip_reference: Annotated[float, msgspec.Meta(gt=0.0, le=0.5)] = 0.1
     pi: PiSettings = PiSettings()

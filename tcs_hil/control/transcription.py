@@ -47,11 +47,16 @@ def _residuals(x0: Any, plan: Any, torque_ref: Any, settings: ControlSettings, c
 
 
 def _advance(x: Any, torque_nm: Any, settings: ControlSettings, car: Vehicle) -> Any:
-    """State [s, omega, e_int] one period later, Eq. (e_int) integrated along."""
+    """State [s, omega, e_int] one period later."""
 
     def rate(state: Any) -> Any:
-        s_rate, omega_rate = slip_dynamics(state[0], state[1], torque_nm, car, ca)
-        error = settings.slip_reference - slip_ratio(state[0], state[1], car)
-        return ca.vertcat(s_rate, omega_rate, error)
+        return wheel_rate(state, torque_nm, settings.slip_reference, car)
 
     return rk4(rate, x, settings.period_s, settings.nmpc.substeps)
+
+
+def wheel_rate(state: Any, torque_nm: Any, slip_reference: Any, car: Vehicle) -> Any:
+    """Time derivative of [s, omega, e_int]: Eq. (e_int) goes with the wheel's dynamics."""
+    s_rate, omega_rate = slip_dynamics(state[0], state[1], torque_nm, car, ca)
+    error = slip_reference - slip_ratio(state[0], state[1], car)
+    return ca.vertcat(s_rate, omega_rate, error)

@@ -25,24 +25,26 @@ class DrivelineObserver:
     """
 
     def __init__(self, driveline: Driveline, period_s: float) -> None:
-        self._a, self._b = discretised(driveline, period_s)
-        self._gain = kalman_gain(self._a)
-        self._x = np.zeros(4)
+        self._rows = filter_rows(*discretised(driveline, period_s))
+        self._x = [0.0, 0.0, 0.0, 0.0]
         self._input_nm = 0.0
         self._known = False
 
     def update(self, shaft_input_nm: float, motor_radps: float) -> list[float]:
         """State [omega, omega_motor, twist, F_x R] from motor torque and speed at the wheel."""
         if not self._known:
-            self._x = np.array((motor_radps, motor_radps, 0.0, 0.0))
+            self._x = [motor_radps, motor_radps, 0.0, 0.0]
             self._known, self._input_nm = True, shaft_input_nm
-            return self._x.tolist()
+            return self._x
         # A torque under control moves by tens of Nm a period: its mean is what turned the motor.
         mean_nm = 0.5 * (self._input_nm + shaft_input_nm)
         self._input_nm = shaft_input_nm
-        predicted = self._a @ self._x + self._b * mean_nm
-        self._x = predicted + self._gain * (motor_radps - predicted[1])
-        return self._x.tolist()
+        x0, x1, x2, x3 = self._x
+        self._x = [
+            a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3 + b * mean_nm + k * motor_radps
+            for a0, a1, a2, a3, b, k in self._rows
+        ]
+        return self._x
 
     def reset(self) -> None:
         """Nothing is known: the wheel turns like its motor."""
@@ -60,6 +62,17 @@ def discretised(line: Driveline, period_s: float) -> tuple[FloatArray, FloatArra
     rates[2, :2] = -1.0, 1.0
     transition = linalg.expm(rates * period_s)
     return transition[:4, :4], transition[:4, 4]
+
+
+def filter_rows(transition: FloatArray, column: FloatArray) -> tuple[tuple[float, ...], ...]:
+    """Prediction and correction in one step: x⁺ = [A - k a_1, b - k b_1, k] [x, input, speed].
+
+    Plain floats: at this size a product by numpy costs more than the numbers.
+    """
+    gain = kalman_gain(transition)
+    closed = transition - np.outer(gain, transition[1])
+    rows = np.column_stack((closed, column - gain * column[1], gain))
+    return tuple(tuple(row) for row in rows.tolist())
 
 
 def kalman_gain(transition: FloatArray) -> FloatArray:

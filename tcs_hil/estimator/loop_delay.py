@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from tcs_hil.control.sent import MAX_DELAY_PERIODS
 from tcs_hil.control.settings import DelaySettings
 from tcs_hil.signals import Pair
@@ -35,8 +33,8 @@ class LoopDelay:
         self._settings = settings
         self._period_s = period_s
         self._lag_gain = 1.0 - math.exp(-period_s / motor_lag_s)
-        self._lagged_nm = np.zeros((2, CANDIDATES))  # newest first
-        self._mean_square = np.zeros(CANDIDATES)
+        self._lagged_nm = [[0.0] * CANDIDATES for _ in range(2)]  # newest first
+        self._mean_square = [0.0] * CANDIDATES
         self._held_ticks = [0, 0]
         self.value_s = settings.delay_s
 
@@ -44,9 +42,8 @@ class LoopDelay:
         """Hear what each motor was allowed at the end of a tick."""
         for side, (torque, request) in enumerate(zip(torque_nm, request_nm, strict=True)):
             history = self._lagged_nm[side]
-            newest = history[0] + self._lag_gain * (torque - history[0])
-            history[1:] = history[:-1]
-            history[0] = newest
+            history.insert(0, history[0] + self._lag_gain * (torque - history[0]))
+            history.pop()
             self._held_ticks[side] = self._held_ticks[side] + 1 if torque < request else 0
 
     def heard(self, echoed_nm: Pair) -> float:
@@ -62,18 +59,20 @@ class LoopDelay:
 
     def _learn(self, side: int, echoed_nm: float) -> bool:
         history = self._lagged_nm[side]
-        travel_nm = float(history.max() - history.min())
-        if self._held_ticks[side] < SETTLED_TICKS or travel_nm < TELLING_NM:
+        if self._held_ticks[side] < SETTLED_TICKS or max(history) - min(history) < TELLING_NM:
             return False
-        self._mean_square += (np.square(history - echoed_nm) - self._mean_square) / WINDOW_TICKS
+        self._mean_square = [
+            mean + ((torque - echoed_nm) ** 2 - mean) / WINDOW_TICKS
+            for mean, torque in zip(self._mean_square, history, strict=True)
+        ]
         return True
 
     def _best_s(self) -> float:
         """Vertex of the parabola around the best candidate; the candidate itself at an end."""
-        best = int(self._mean_square.argmin())
+        best = self._mean_square.index(min(self._mean_square))
         if not 0 < best < CANDIDATES - 1:
             return best * self._period_s
-        before, at, after = self._mean_square[best - 1 : best + 2].tolist()
+        before, at, after = self._mean_square[best - 1 : best + 2]
         bend = before - 2.0 * at + after
         fraction = 0.5 * (before - after) / bend if bend > 0.0 else 0.0
         return (best + fraction) * self._period_s

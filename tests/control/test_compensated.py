@@ -55,7 +55,7 @@ def test_it_plans_from_the_state_behind_the_torques_under_way() -> None:
 
 def test_the_first_torque_of_the_plan_is_proposed_within_the_request() -> None:
     controller = control(Scripted(80.0, 200.0 + 1e-7))
-    assert controller.step(SPINNING, 200.0) == Proposal(80.0, iterations=2)
+    assert controller.step(SPINNING, 200.0) == Proposal(80.0, iterations=2, next_nm=0.0)
     assert controller.step(SPINNING, 200.0).torque_nm == 200.0
 
 

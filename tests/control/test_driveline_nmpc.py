@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tcs_hil.control.driveline_nmpc import DrivelineOptimiser, Flow, driveline_mpc
+from tcs_hil.control.driveline_casadi import Flow
+from tcs_hil.control.driveline_nmpc import DrivelineOptimiser, driveline_mpc
 from tcs_hil.control.driveline_transcription import advance_function, plan_function
 from tcs_hil.control.force_disturbance import ForceDisturbance
 from tcs_hil.control.least_squares import Linearisation

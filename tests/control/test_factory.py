@@ -12,7 +12,10 @@ from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
 from tcs_hil.model.predictor import KoopmanPredictor
 from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.native import is_built
 from tcs_hil.signals import ControllerKind
+
+needs_native = pytest.mark.skipif(not is_built(), reason="no native step was built")
 
 SOLVERS_LOADED_BY = """
 import sys
@@ -22,16 +25,24 @@ from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.signals import ControllerKind
 predictor = KoopmanPredictor.load(default_model_path(), 0.002)
-make_controller(ControllerKind[sys.argv[1]], ControlSettings(preset="paper"), Vehicle(), predictor)
+settings = ControlSettings(preset="paper", backend=sys.argv[2])
+make_controller(ControllerKind[sys.argv[1]], settings, Vehicle(), predictor)
 print(*sorted({"casadi", "daqp", "osqp"} & sys.modules.keys()))
 """
 
 
 @pytest.mark.parametrize(
-    ("kind", "solvers"), [("PI", ""), ("KMPC", "osqp"), ("NMPC", "casadi daqp")]
+    ("kind", "backend", "solvers"),
+    [
+        ("PI", "auto", ""),
+        ("KMPC", "python", "osqp"),
+        ("NMPC", "python", "casadi daqp"),
+        pytest.param("KMPC", "native", "", marks=needs_native),
+        pytest.param("NMPC", "native", "", marks=needs_native),
+    ],
 )
-def test_only_the_solvers_in_use_are_imported(kind: str, solvers: str) -> None:
-    command = [sys.executable, "-c", SOLVERS_LOADED_BY, kind]
+def test_only_the_solvers_in_use_are_imported(kind: str, backend: str, solvers: str) -> None:
+    command = [sys.executable, "-c", SOLVERS_LOADED_BY, kind, backend]
     answer = subprocess.run(command, capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == solvers
 

@@ -38,7 +38,9 @@ def control(optimiser: Scripted) -> PredictiveController:
 
 
 def test_the_first_input_of_the_plan_is_proposed() -> None:
-    assert control(Scripted(plan(80.0))).step(WHEEL, 200.0) == Proposal(80.0, iterations=3)
+    assert control(Scripted(plan(80.0))).step(WHEEL, 200.0) == Proposal(
+        80.0, iterations=3, next_nm=1.0
+    )
 
 
 def test_a_solver_tolerance_never_leaves_the_box() -> None:
@@ -49,7 +51,7 @@ def test_a_solver_tolerance_never_leaves_the_box() -> None:
 
 def test_the_best_plan_so_far_is_used_when_iterations_run_out() -> None:
     proposal = control(Scripted(plan(80.0, SolveStatus.MAX_ITERATIONS))).step(WHEEL, 200.0)
-    assert proposal == Proposal(80.0, SolveStatus.MAX_ITERATIONS, 3)
+    assert proposal == Proposal(80.0, SolveStatus.MAX_ITERATIONS, 3, 1.0)
 
 
 def test_a_failed_solve_leaves_the_request_and_is_no_warm_start() -> None:

@@ -1,0 +1,67 @@
+"""The core of the default nonlinear MPC in Python: CasADi's functions and the SQP."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tcs_hil.control.driveline_core import Situation
+from tcs_hil.control.driveline_transcription import NX, advance_function, plan_function
+from tcs_hil.control.least_squares import Linearisation
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.control.sqp import minimise
+from tcs_hil.model.vehicle import Vehicle
+
+FloatArray = NDArray[np.float64]
+
+
+class CasadiCore:
+    """Gauss-Newton SQP, warm from the last plan, shifted by the period that has passed."""
+
+    def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
+        tuning = settings.default.nmpc
+        self._flow = Flow(advance_function(settings, vehicle))
+        self._problem = Linearisation(plan_function(settings, vehicle))
+        self._max_iterations = tuning.max_iterations
+        self._guess = np.zeros(len(tuning.blocks))  # (N,), Nm
+
+    def after(
+        self, state: FloatArray, torque_nm: float, duration_s: float, disturbance_n: float
+    ) -> FloatArray:
+        """State (7,) after a duration; valid until the next call."""
+        return self._flow.after(state, torque_nm, duration_s, disturbance_n)
+
+    def plan(self, state: FloatArray, situation: Situation) -> Plan:
+        """Best torques (N,) in Nm from a state (7,) on."""
+        self._problem.start_from(state, *situation)
+        feasible = np.minimum(self._guess, situation.torque_ref_nm)
+        plan = minimise(self._problem, feasible, situation.torque_ref_nm, self._max_iterations)
+        self._guess = np.append(plan.inputs[1:], plan.inputs[-1])
+        return plan
+
+    def reset(self) -> None:
+        """Forget the last plan."""
+        self._guess = np.zeros_like(self._guess)
+
+
+class Flow:
+    """The prediction model on preallocated memory."""
+
+    def __init__(self, function: Any) -> None:
+        self._x, self._parameters, self._after = np.zeros(NX), np.zeros(3), np.zeros(NX)
+        self._buffer, self._evaluate = function.buffer()
+        self._buffer.set_arg(0, self._x.data)
+        self._buffer.set_arg(1, self._parameters.data)
+        self._buffer.set_res(0, self._after.data)
+
+    def after(
+        self, state: FloatArray, torque_nm: float, duration_s: float, disturbance_n: float
+    ) -> FloatArray:
+        """State (7,) after a duration; valid until the next call."""
+        self._x[:] = state
+        self._parameters[:] = torque_nm, duration_s, disturbance_n
+        self._evaluate()
+        return self._after

@@ -1,0 +1,41 @@
+"""The laws' steps in C, where a compiler was at hand when the package was installed.
+
+Numbers and arrays go in, numbers come out; what they mean is known to
+`tcs_hil.control.native`.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+_EXTENSION = "tcs_hil.native._core"
+
+
+@cache
+def is_built() -> bool:
+    """Is there a compiled step in this installation?"""
+    return find_spec(_EXTENSION) is not None
+
+
+@cache
+def core() -> Any:
+    """The extension: ``ffi`` and ``lib``, as declared in ``interface.h``."""
+    return import_module(_EXTENSION)
+
+
+def array_of(memory: Any) -> FloatArray:
+    """The doubles of an array in a C struct, as an array over the same memory."""
+    return np.frombuffer(core().ffi.buffer(memory), np.float64)
+
+
+def doubles(array: FloatArray) -> Any:
+    """Pointer to the elements of an array, row by row; C is to have copied them on return."""
+    return core().ffi.from_buffer("double[]", np.ascontiguousarray(array, dtype=np.float64))

@@ -1,0 +1,74 @@
+/* What Python sees of the native step, for cffi; the compiler checks it against src/.
+   "...;" stands for what Python has no business with. */
+
+enum solve_status { SOLVE_OK, SOLVE_MAX_ITERATIONS, SOLVE_FAILED, SOLVE_BAD_INPUT };
+
+typedef struct {
+    int iterations;
+    double x[...];
+    ...;
+} box_qp;
+
+int box_qp_setup(box_qp *qp, int n, const double *hessian);
+void box_qp_reset(box_qp *qp);
+int box_qp_solve(box_qp *qp, const double *g, const double *lower, const double *upper);
+
+typedef struct {
+    double torque_nm, next_nm;
+} proposal;
+
+typedef struct {
+    double slip_reference, period_s;
+    ...;
+} slip_error_integral;
+
+enum dictionary { MONOMIALS, THIN_PLATE, GAUSSIAN };
+
+typedef struct {
+    int dictionary, order, centre_count;
+    double s_mean_mps, s_std_mps, omega_mean_radps, omega_std_radps;
+    double wheel_radius_m, slip_epsilon_m2ps2;
+    double centres[...][2];
+    ...;
+} lifting;
+
+typedef struct {
+    proposal *answer;
+    slip_error_integral integral;
+    lifting map;
+    double torque_mean_nm, torque_std_nm, reduction_pull;
+    ...;
+} kmpc;
+
+int kmpc_setup(kmpc *law, int horizon, const double *hessian, const double *gradient_map);
+void kmpc_reset(kmpc *law);
+int kmpc_step(kmpc *law, double slip_speed_mps, double wheel_speed_radps, double slip_ratio,
+              double vehicle_speed_mps, double torque_ref_nm);
+
+typedef struct {
+    proposal *answer;
+    slip_error_integral integral;
+    int substeps;
+    double slip_gain, integral_gain;
+    double parameters[...];
+    ...;
+} nmpc;
+
+void nmpc_setup(nmpc *law, int horizon, int max_iterations);
+void nmpc_reset(nmpc *law);
+int nmpc_step(nmpc *law, double slip_speed_mps, double wheel_speed_radps, double slip_ratio,
+              double vehicle_speed_mps, double torque_ref_nm);
+
+typedef struct {
+    double x[...], plan[...];
+    double disturbance_n;
+    double period_s, slip_gain, integral_gain, reduction_gain;
+    double parameters[...];
+    int blocks[...];
+    ...;
+} driveline;
+
+void driveline_setup(driveline *law, int block_count, int max_iterations);
+void driveline_reset(driveline *law);
+void driveline_advance(driveline *law, double torque_nm, double duration_s);
+int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm, double urgency);

@@ -1,0 +1,35 @@
+/* The core of the default nonlinear MPC: its prediction model, and the plan from a state on. */
+
+#ifndef TCS_DRIVELINE_H
+#define TCS_DRIVELINE_H
+
+#include "sqp.h"
+
+enum { DRIVELINE_NX = 7, DRIVELINE_PARAMETERS = 17 };
+
+typedef struct {
+    double x[DRIVELINE_NX]; /* the state that the functions below start from; SI units */
+    double plan[BOX_QP_MAX];
+    double disturbance_n;   /* on the tyre force */
+    double torque_ref_nm, last_torque_nm;
+    double urgency;         /* factor on the residuals of slip and integral */
+    double period_s;
+    double slip_gain, integral_gain, reduction_gain; /* Nm per unit slip, per second, per Nm */
+    double parameters[DRIVELINE_PARAMETERS];         /* of driveline_model.h */
+    int blocks[BOX_QP_MAX];                          /* periods each torque is held for */
+    sqp solver;
+} driveline;
+
+/* Set up with period, gains, parameters and blocks filled in. */
+void driveline_setup(driveline *law, int block_count, int max_iterations);
+
+/* Forget the last plan. */
+void driveline_reset(driveline *law);
+
+/* Replace x by the state after a duration of at most 4 ms under a commanded motor torque. */
+void driveline_advance(driveline *law, double torque_nm, double duration_s);
+
+/* Write the best torques from x on into `plan`; see `outcome`. */
+int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm, double urgency);
+
+#endif

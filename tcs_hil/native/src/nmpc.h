@@ -1,0 +1,33 @@
+/* The nonlinear MPC as published, a whole step at a time: single shooting, SQP, integral. */
+
+#ifndef TCS_NMPC_H
+#define TCS_NMPC_H
+
+#include "sqp.h"
+#include "wheel_state.h"
+
+enum { WHEEL_NX = 3, WHEEL_PARAMETERS = 12 };
+
+typedef struct {
+    proposal *answer; /* where it is written */
+    slip_error_integral integral;
+    int substeps;                          /* Runge-Kutta steps in a period */
+    double slip_gain, integral_gain;       /* Nm per unit slip and per second: the residuals' */
+    double parameters[WHEEL_PARAMETERS];   /* of wheel_model.h */
+    double start[WHEEL_NX];                /* x_0 = [s, omega, e_int] */
+    double torque_ref_nm;
+    double before[BOX_QP_MAX];             /* the plan before the last one, which the solver has */
+    sqp solver;
+} nmpc;
+
+/* Set up with integral, substeps, gains and parameters filled in. */
+void nmpc_setup(nmpc *law, int horizon, int max_iterations);
+
+/* Forget the integral and the last plans. */
+void nmpc_reset(nmpc *law);
+
+/* Decide for the coming period: see `proposal` and `outcome`. */
+int nmpc_step(nmpc *law, double slip_speed_mps, double wheel_speed_radps, double slip_ratio,
+              double vehicle_speed_mps, double torque_ref_nm);
+
+#endif

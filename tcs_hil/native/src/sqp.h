@@ -1,0 +1,30 @@
+/* Gauss-Newton SQP over a box, as in tcs_hil/control/sqp.py: exact box QPs and a line search. */
+
+#ifndef TCS_SQP_H
+#define TCS_SQP_H
+
+#include "box_qp.h"
+
+typedef struct {
+    int max_iterations;
+    int iterations;
+    double plan[BOX_QP_MAX];     /* the guess before, the result after; Nm */
+    double gradient[BOX_QP_MAX]; /* at the plan */
+    box_qp qp;                   /* over the step from the plan; its Hessian is the model's */
+} sqp;
+
+/* Cost of a plan (N,), a sum of squares; writes gradient (N,) and Hessian (N, N) of its
+   Gauss-Newton model. */
+typedef double least_squares(const void *problem, int n, const double *plan, double *gradient,
+                             double *hessian);
+
+/* Start cold with n torques. */
+void sqp_setup(sqp *solver, int n, int max_iterations);
+
+/* Forget the last plan. */
+void sqp_reset(sqp *solver);
+
+/* Minimise over 0 <= plan <= ceiling_nm from the feasible plan in `solver`. */
+int sqp_minimise(sqp *solver, least_squares *model, const void *problem, double ceiling_nm);
+
+#endif

@@ -1,0 +1,67 @@
+"""Every law that has a native step, in C and in Python, and what both are asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from msgspec.structs import replace
+
+from tcs_hil.control.factory import make_controller
+from tcs_hil.control.protocol import Controller, Proposal, WheelState
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import ControllerKind
+from tests.control.recorder import wheel_at
+
+PAPER = ControlSettings(preset="paper")
+PREDICTOR = KoopmanPredictor.load(default_model_path(), PAPER.period_s)
+
+
+def both(
+    kind: ControllerKind,
+    settings: ControlSettings = PAPER,
+    predictor: KoopmanPredictor = PREDICTOR,
+    vehicle: Vehicle | None = None,
+) -> tuple[Controller, Controller]:
+    """The law in C and the law in Python."""
+    native, python = (
+        make_controller(kind, replace(settings, backend=name), vehicle or Vehicle(), predictor)
+        for name in ("native", "python")
+    )
+    return native, python
+
+
+@dataclass
+class SideBySide:
+    """The law in Python closes the loop; the one in C is asked the same."""
+
+    laws: tuple[Controller, Controller]
+    answers: list[tuple[Proposal, Proposal]] = field(default_factory=list)
+
+    def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
+        native, python = (law.step(wheel, torque_ref_nm) for law in self.laws)
+        self.answers.append((native, python))
+        return python
+
+    def reset(self) -> None:
+        for law in self.laws:
+            law.reset()
+
+    def worst_nm(self) -> float:
+        """Largest difference of their torques, those for the period after included."""
+        torques = np.array([_torques_nm(*answer) for answer in self.answers])  # (n, 2, 2)
+        return float(np.nanmax(np.abs(torques[:, 0] - torques[:, 1])))
+
+
+def _torques_nm(*proposals: Proposal) -> list[tuple[float, float]]:
+    return [(proposal.torque_nm, proposal.next_nm) for proposal in proposals]
+
+
+def random_questions(seed: int, count: int) -> Iterator[tuple[WheelState, float]]:
+    """Wheels and requests from all over, one after the other without any sense."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        yield wheel_at(rng.uniform(0.0, 40.0), rng.uniform(-0.1, 0.9)), rng.uniform(0.0, 250.0)

@@ -1,0 +1,117 @@
+"""The native step and the law in Python propose the same torque."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from msgspec.structs import replace as replaced
+
+from tcs_hil.control.protocol import Controller
+from tcs_hil.control.settings import ControlSettings, KmpcSettings, NmpcSettings
+from tcs_hil.model.lifting import make_dictionary
+from tcs_hil.model.predictor import KoopmanPredictor
+from tcs_hil.model.radial import centre_count
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import ControllerKind
+from tests.control.quarter_car import Run, manoeuvre_1, manoeuvre_2
+from tests.control.recorder import wheel_at
+from tests.native.pairs import PAPER, PREDICTOR, SideBySide, both, random_questions
+
+AGREEMENT_NM = 1e-6
+
+LAWS = (ControllerKind.KMPC, ControllerKind.NMPC)
+every_law = pytest.mark.parametrize("kind", LAWS, ids=lambda kind: kind.name)
+
+
+@every_law
+@pytest.mark.parametrize("manoeuvre", [manoeuvre_1, manoeuvre_2])
+def test_along_a_manoeuvre(kind: ControllerKind, manoeuvre: Callable[[Controller], Run]) -> None:
+    pair = SideBySide(both(kind))
+    manoeuvre(pair)
+    assert pair.worst_nm() < AGREEMENT_NM
+    for native, python in pair.answers:
+        assert native.status is python.status
+
+
+@every_law
+def test_from_one_random_state_to_the_next(kind: ControllerKind) -> None:
+    pair = SideBySide(both(kind))
+    for wheel, torque_ref_nm in random_questions(0, 1500):
+        pair.step(wheel, torque_ref_nm)
+    assert pair.worst_nm() < AGREEMENT_NM
+
+
+@every_law
+@pytest.mark.parametrize("torque_ref_nm", [0.0, -20.0, math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize(
+    "wheel", [wheel_at(2.0, 0.4), replace(wheel_at(2.0, 0.4), slip_ratio=math.nan)]
+)
+def test_where_there_is_nothing_to_decide(
+    kind: ControllerKind, wheel: object, torque_ref_nm: float
+) -> None:
+    native, python = (law.step(wheel, torque_ref_nm) for law in both(kind))
+    assert native == python
+
+
+@pytest.mark.parametrize(
+    ("kind", "horizon"),
+    [
+        *((ControllerKind.KMPC, horizon) for horizon in (1, 2, 12, 40)),
+        *((ControllerKind.NMPC, horizon) for horizon in (1, 2, 12)),  # CasADi takes 25 s for 40
+    ],
+)
+def test_at_every_horizon(kind: ControllerKind, horizon: int) -> None:
+    tuning = {"kmpc": KmpcSettings(horizon=horizon), "nmpc": NmpcSettings(horizon=horizon)}
+    pair = SideBySide(both(kind, replaced(PAPER, **tuning)))
+    for wheel, torque_ref_nm in random_questions(1, 60):
+        pair.step(wheel, torque_ref_nm)
+    assert pair.worst_nm() < AGREEMENT_NM
+
+
+def test_of_another_vehicle_with_another_tuning() -> None:
+    car = Vehicle(mass_kg=2200.0, wheel_radius_m=0.35, gear_ratio=2.5, friction_ratio=0.5)
+    tuning = NmpcSettings(weight_slip=300.0, weight_integral=2e4, substeps=7)
+    settings = ControlSettings(preset="paper", slip_reference=0.07, nmpc=tuning, period_s=0.003)
+    pair = SideBySide(both(ControllerKind.NMPC, settings, vehicle=car))
+    for wheel, torque_ref_nm in random_questions(2, 300):
+        pair.step(wheel, torque_ref_nm)
+    assert pair.worst_nm() < AGREEMENT_NM
+
+
+@pytest.mark.parametrize("dictionary", ["monomials", "thin-plate", "gaussian"])
+@pytest.mark.parametrize("order", [2, 8])
+def test_with_every_dictionary(dictionary: str, order: int) -> None:
+    pair = SideBySide(both(ControllerKind.KMPC, predictor=made_up_predictor(dictionary, order)))
+    for wheel, torque_ref_nm in random_questions(3, 300):
+        pair.step(wheel, torque_ref_nm)
+    assert pair.worst_nm() < AGREEMENT_NM
+    assert len({native.torque_nm for native, _ in pair.answers}) >= 10  # not one bound all along
+
+
+def made_up_predictor(dictionary: str, order: int) -> KoopmanPredictor:
+    """Slow random dynamics over a dictionary; the torque drives kappa as it does in the car."""
+    rng = np.random.default_rng(order)
+    count = 0 if dictionary == "monomials" else centre_count(order)
+    centres = tuple(map(tuple, rng.normal(size=(count, 2)).tolist()))
+    nz = make_dictionary(dictionary, order, centres).size
+    a, b = np.eye(nz), np.zeros((nz, 1))
+    a[2] += rng.normal(scale=1e-4, size=nz)
+    b[:3, 0] = PREDICTOR.b[:3, 0]
+    provenance = replaced(PREDICTOR.provenance, dictionary=dictionary, order=order, centres=centres)
+    return KoopmanPredictor.build(a, b, provenance)
+
+
+@every_law
+def test_after_a_reset_too(kind: ControllerKind) -> None:
+    pair = SideBySide(both(kind))
+    first = [pair.step(*question) for question in random_questions(4, 40)]
+    pair.reset()
+    again = [pair.step(*question) for question in random_questions(4, 40)]
+    assert again == first
+    assert pair.worst_nm() < AGREEMENT_NM
+    halves = pair.answers[:40], pair.answers[40:]
+    assert [native for native, _ in halves[0]] == [native for native, _ in halves[1]]

@@ -11,10 +11,11 @@ import msgspec
 from msgspec import Meta
 
 from plant_emulator.body import Body
-from plant_emulator.bounds import NonNegative, Positive, Table
+from plant_emulator.bounds import Positive, Table
 from plant_emulator.bustiming import IDEAL, BusTiming
 from plant_emulator.driveline import Driveline
 from plant_emulator.driver import Driver
+from plant_emulator.expect import ControllerTable, Expect
 from plant_emulator.faults import Fault
 from plant_emulator.quarter_car import QuarterCar
 from plant_emulator.road import Patch
@@ -52,34 +53,6 @@ class VehicleTable(Table, frozen=True):
     def whole(self) -> WholeCar:
         """Parameters of the whole car."""
         return WholeCar(body=self.body, tyre=self.tyre, driveline=self.driveline)
-
-
-class ControllerTable(Table, frozen=True):
-    """Which control law a bench should start against this scenario; nothing reads it yet."""
-
-    kind: Literal["off", "pi", "kmpc", "nmpc"] = "nmpc"
-    preset: str = "default"
-
-
-class Expect(Table, frozen=True):
-    """A limit on a signal in every sample of the window, or on a metric over it.
-
-    Checked for form when the scenario is read; nothing judges it yet.
-    """
-
-    op: Literal["<", "<=", ">", ">=", "=="]
-    value: float
-    signal: str | None = None
-    metric: str | None = None
-    from_s: NonNegative = 0.0
-    to_s: Positive | None = None
-
-    def __post_init__(self) -> None:
-        """Refuse a limit on nothing, on two things or over an empty window."""
-        if (self.signal is None) == (self.metric is None):
-            raise ValueError("give either `signal` or `metric`")
-        if self.to_s is not None and self.to_s <= self.from_s:
-            raise ValueError("`to_s` must be greater than `from_s`")
 
 
 class Scenario(Table, frozen=True):
@@ -125,6 +98,11 @@ class Scenario(Table, frozen=True):
         """The same scenario driven by the other car."""
         vehicle = msgspec.structs.replace(self.vehicle, variant=variant)
         return msgspec.structs.replace(self, vehicle=vehicle)
+
+    def resolved(self) -> Scenario:
+        """The same scenario without the files that were read into it: it stands alone."""
+        vehicle = msgspec.structs.replace(self.vehicle, tyre_file=None)
+        return msgspec.structs.replace(self, vehicle=vehicle, road_file=None)
 
 
 class Listing(msgspec.Struct, frozen=True):

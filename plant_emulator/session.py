@@ -18,9 +18,8 @@ from plant_emulator.realtime import Jitter, run_realtime
 from plant_emulator.recording import TruthRecorder
 from plant_emulator.scenario import Scenario
 from plant_emulator.undisturbed import undisturbed
-from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.database import load_database
-from tcs_hil.canbus.port import CanPort
+from tcs_hil.canbus.port import CanPort, open_port
 from tcs_hil.canbus.vehicle_node import VehicleNode
 from tcs_hil.runtime.clock import MonotonicClock
 from tcs_hil.runtime.notify import notify
@@ -62,10 +61,15 @@ def run(
         ConfigError: the recording cannot be written.
     """
     recorder = TruthRecorder(options.record, scenario)
-    bus, description = open_bus(options.interface, options.channel, options.bitrate)
+    port, description = open_port(
+        options.interface,
+        options.channel,
+        options.bitrate,
+        send_timeout_s=_SEND_TIMEOUT_S[options.mode],
+    )
     say(f"bus: {description}")
-    with closing(CanPort(bus, send_timeout_s=_SEND_TIMEOUT_S[options.mode])) as port:
-        _warm_up(scenario)
+    with closing(port):
+        warm_up(scenario)
         plant = Plant(scenario)
         live = options.mode == "realtime"
         emulator = Emulator(plant, VehicleNode(load_database()), port, recorder, live=live)
@@ -78,7 +82,7 @@ def run(
     return _summary(plant, jitter_ns)
 
 
-def _warm_up(scenario: Scenario) -> None:
+def warm_up(scenario: Scenario) -> None:
     """Compile everything on a plant of its own: the first grid instant must not wait for it."""
     plant = Plant(scenario)
     plant.step(None, PERIOD_S)

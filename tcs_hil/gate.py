@@ -1,57 +1,106 @@
-"""Last word on one motor's torque: finite, within [0, request], and never a raise in trouble."""
+"""Last word on one motor's torque: finite, within [0, request], and raised no faster than allowed.
+
+Independent of controller, supervisor and plausibility: it knows a wish, what
+the driver asks, and how far it may be trusted to raise.
+"""
 
 from __future__ import annotations
 
 import math
-from enum import Enum
+from collections import deque
+from enum import IntEnum
 from typing import Annotated
 
 import msgspec
 
 from tcs_hil.signals import NO_LIMIT
 
+BEYOND_ANY_REQUEST_NM = 1_000.0
+"""Stands for a request that nobody knows: no motor of a car asks for more."""
 
-class Permission(Enum):
-    """What the supervisor lets a gate do with the controllers' proposals."""
 
-    FOLLOW = "follow"
-    HOLD = "hold"
-    RELEASE = "release"
+class Permission(IntEnum):
+    """What the supervisor lets a gate do with the controllers' proposals; stricter is greater."""
+
+    FOLLOW = 0
+    FOLLOW_SLOWLY = 1  # lowered at once, raised no faster than released
+    HOLD = 2  # lowered, never raised
+    RELEASE = 3  # the controllers are not asked; the driver gets the torque back
+
+
+Rate = Annotated[float, msgspec.Meta(gt=0.0, le=1e6)]
 
 
 class GateSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """``release_rate_nmps``: how fast a limit that is given up returns to the request."""
+    """How fast a ceiling may move.
 
-    release_rate_nmps: Annotated[float, msgspec.Meta(gt=0.0)] = 500.0
-    slack_nm: Annotated[float, msgspec.Meta(ge=0.0)] = 0.05
+    ``rise_rate_nmps`` and ``fall_rate_nmps`` bound a trusted law;
+    ``window_rise_nm`` is the most it may raise in ``window_s``.  A ceiling that
+    is given up rises by ``release_rate_nmps``.  One that reaches the request, to
+    within ``slack_nm``, is lifted; not before ``lift_s``, though, where it was the
+    request that fell, for that may come back.
+    """
+
+    rise_rate_nmps: Rate = 20_000.0
+    fall_rate_nmps: Rate = 125_000.0
+    release_rate_nmps: Rate = 500.0
+    window_s: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.1
+    window_rise_nm: Annotated[float, msgspec.Meta(gt=0.0, le=1e4)] = 200.0
+    slack_nm: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)] = 0.05
+    lift_s: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.02
 
 
 class Gate:
     """One motor's gate.  Total: any float in, a number in [0, request] or ``NO_LIMIT`` out.
 
-    Losing the controller must never mean losing the car: RELEASE ramps the
-    ceiling up to the driver's request and then lifts it.
+    From one finite ceiling to the next it rises by no more than the permission
+    allows, whatever the request does in between.  Losing the controller must
+    never mean losing the car: RELEASE ramps the ceiling up to the driver's
+    request and then lifts it.
     """
 
     def __init__(self, settings: GateSettings, period_s: float) -> None:
+        released_nm = settings.release_rate_nmps * period_s
+        self._rise_nm = {
+            Permission.FOLLOW: settings.rise_rate_nmps * period_s,
+            Permission.FOLLOW_SLOWLY: released_nm,
+            Permission.HOLD: 0.0,
+            Permission.RELEASE: released_nm,
+        }
+        self._fall_nm = settings.fall_rate_nmps * period_s
         self._slack_nm = settings.slack_nm
-        self._release_step_nm = settings.release_rate_nmps * period_s
-        self._limit_nm = NO_LIMIT
+        self._window_rise_nm = settings.window_rise_nm
+        self._window_nm: deque[float] = deque(maxlen=max(round(settings.window_s / period_s), 1))
+        self._lift_ticks = round(settings.lift_s / period_s)
+        self._ticks_to_lift = 0
+        self._ceiling_nm = NO_LIMIT
 
     def limit(self, wanted_nm: float, request_nm: float, permission: Permission) -> float:
         """Ceiling (Nm, or ``NO_LIMIT``) for the coming period."""
-        self._limit_nm = self._ceiling(wanted_nm, request_nm, permission)
-        may_lift = permission is not Permission.HOLD
-        if may_lift and self._limit_nm >= request_nm - self._slack_nm:
-            self._limit_nm = NO_LIMIT
-        # An unknown request compares as false everywhere: the ceiling then stands alone.
-        binding = self._limit_nm < NO_LIMIT and request_nm < self._limit_nm
-        return max(request_nm, 0.0) if binding else self._limit_nm
+        most_nm = max(request_nm, 0.0) if math.isfinite(request_nm) else BEYOND_ANY_REQUEST_NM
+        before_nm = min(self._ceiling_nm, most_nm)  # without a ceiling the request is in force
+        target_nm = _target_nm(wanted_nm, before_nm, most_nm, permission)
+        highest_nm = min(before_nm + self._rise_nm[permission], most_nm)
+        if target_nm > before_nm and self._window_nm:
+            highest_nm = min(highest_nm, min(self._window_nm) + self._window_rise_nm)
+        ceiling_nm = min(max(target_nm, before_nm - self._fall_nm, 0.0), highest_nm)
+        self._ceiling_nm = self._kept_or_lifted(ceiling_nm, most_nm, permission)
+        return self._ceiling_nm
 
-    def _ceiling(self, wanted_nm: float, request_nm: float, permission: Permission) -> float:
-        if permission is Permission.RELEASE:
-            return self._limit_nm + self._release_step_nm
-        if not (math.isfinite(wanted_nm) and math.isfinite(request_nm)):
-            return self._limit_nm
-        ceiling_nm = max(wanted_nm, 0.0)
-        return min(ceiling_nm, self._limit_nm) if permission is Permission.HOLD else ceiling_nm
+    def _kept_or_lifted(self, ceiling_nm: float, most_nm: float, permission: Permission) -> float:
+        """The ceiling, or ``NO_LIMIT`` where it holds nothing back."""
+        unlimited = self._ceiling_nm == NO_LIMIT
+        fell = not unlimited and most_nm < self._ceiling_nm
+        self._ticks_to_lift = self._lift_ticks if fell else max(self._ticks_to_lift - 1, 0)
+        may_lift = permission is not Permission.HOLD and not self._ticks_to_lift
+        if ceiling_nm >= most_nm - self._slack_nm and (unlimited or may_lift):
+            self._window_nm.clear()
+            return NO_LIMIT
+        self._window_nm.append(ceiling_nm)
+        return ceiling_nm
+
+
+def _target_nm(wanted_nm: float, before_nm: float, most_nm: float, permission: Permission) -> float:
+    if permission is Permission.RELEASE:
+        return most_nm
+    return wanted_nm if math.isfinite(wanted_nm) else before_nm

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from tcs_hil.control.protocol import Controller, Proposal, SolveStatus
+from tcs_hil.control.protocol import Controller, Proposal
 from tcs_hil.estimator import Estimate, Estimates
 from tcs_hil.gate import Gate, Permission
+from tcs_hil.plausibility import Plausibility, screened
 from tcs_hil.signals import (
     NO_LIMIT,
     Command,
@@ -18,7 +19,6 @@ from tcs_hil.signals import (
 )
 from tcs_hil.supervisor import Supervisor, Verdict
 
-UNSOLVED = (SolveStatus.FAILED, SolveStatus.BAD_INPUT)
 NO_PROPOSAL = Proposal(math.nan)
 
 
@@ -38,31 +38,44 @@ class Trace:
     estimate: Estimate
     proposals: tuple[Proposal, Proposal]
     verdict: Verdict
+    suspects: int = 0  # bits of Suspect
 
 
 class Pipeline:
-    """Estimate, supervise, control, gate: the service between bytes and bytes."""
+    """Screen, estimate, supervise, control, gate: the service between bytes and bytes."""
 
     def __init__(
-        self, estimator: Estimates, supervisor: Supervisor, law: Law, gates: tuple[Gate, Gate]
+        self,
+        plausibility: Plausibility,
+        estimator: Estimates,
+        supervisor: Supervisor,
+        law: Law,
+        gates: tuple[Gate, Gate],
     ) -> None:
+        self._plausibility = plausibility
         self._estimator = estimator
         self._supervisor = supervisor
         self._law = law
         self._gates = gates
+        self._suspects = 0
         self.trace: Trace | None = None
 
     def step(self, measurement: Measurement) -> Command:
         """Turn the newest measurement into the command for the coming period."""
-        estimate = self._estimator.update(measurement)
-        verdict = self._supervisor.judge(measurement)
+        self._suspects = self._plausibility.suspects(measurement)
+        # The supervisor hears of what is not believed; the estimator does not hear it at all.
+        believed = screened(measurement, self._suspects) if self._suspects else measurement
+        estimate = self._estimator.update(believed)
+        verdict = self._supervisor.judge(measurement, self._suspects)
         proposals = self._propose(estimate, measurement.driver_torque_nm, verdict.permission)
-        unsolved = any(proposal.status in UNSOLVED for proposal in proposals)
-        # Where inputs are late already, that is the reason, and a law without them no news.
-        if unsolved and verdict.permission is Permission.FOLLOW:
-            verdict = self._supervisor.controller_failed()
+        if verdict.permission is not Permission.RELEASE:
+            verdict = self._supervisor.heard(proposals)
         limits = self._gate(proposals, measurement.driver_torque_nm, verdict.permission)
         return self._command(limits, verdict, estimate, proposals)
+
+    def sent(self, overran: bool) -> None:
+        """Hear, after the tick, whether its limits went out after the deadline."""
+        self._supervisor.sent(overran)
 
     def abandon(self, measurement: Measurement) -> Command:
         """Command after ``step`` raised: FAULT, and the torque goes back to the driver."""
@@ -80,9 +93,10 @@ class Pipeline:
             left.reset()
             right.reset()
             return NO_PROPOSAL, NO_PROPOSAL
+        # A motor that is asked to brake has no torque to be limited.
         return (
-            left.step(estimate.wheels[0], request_nm[0]),
-            right.step(estimate.wheels[1], request_nm[1]),
+            left.step(estimate.wheels[0], max(request_nm[0], 0.0)),
+            right.step(estimate.wheels[1], max(request_nm[1], 0.0)),
         )
 
     def _gate(
@@ -94,6 +108,7 @@ class Pipeline:
         )
         allowed_nm = (min(left, request_nm[0]), min(right, request_nm[1]))
         self._estimator.sent(allowed_nm, request_nm)
+        self._plausibility.sent(allowed_nm)
         return TorqueLimits(left, right)
 
     def _command(
@@ -106,7 +121,7 @@ class Pipeline:
         active = (limits.left_nm < NO_LIMIT, limits.right_nm < NO_LIMIT)
         if any(active):
             verdict = self._supervisor.limiting()
-        self.trace = Trace(estimate, proposals, verdict)
+        self.trace = Trace(estimate, proposals, verdict, self._suspects)
         return Command(
             limits=limits,
             active=active,

@@ -42,13 +42,14 @@ class InputState(IntEnum):
     """What the protection of one received message has come to (E2E state machine).
 
     NO_DATA before the first frame, INIT while too few were good, VALID, and
-    INVALID once too many were not.
+    INVALID once too many were not; ABSENT where the vehicle has no such message.
     """
 
     NO_DATA = 0
     INIT = 1
     VALID = 2
     INVALID = 3
+    ABSENT = 4
 
 
 class BusCondition(IntEnum):
@@ -61,6 +62,19 @@ class BusCondition(IntEnum):
     DOWN = 4  # interface down or removed
     BUS_OFF = 5  # the CAN controller has left the bus
     INTRUDER = 6  # somebody else sends what only we may send
+
+
+class Suspect(IntEnum):
+    """Bit of each input that may turn out to contradict the others; all fit one byte."""
+
+    WHEEL_FL = 1
+    WHEEL_FR = 2
+    WHEEL_RL = 4
+    WHEEL_RR = 8
+    MOTOR_LEFT = 16
+    MOTOR_RIGHT = 32
+    ACCELEROMETER = 64
+    DRIVER = 128
 
 
 @dataclass(frozen=True, slots=True)

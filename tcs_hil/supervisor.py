@@ -1,43 +1,95 @@
 """Decides the state of the service and what the gate may do in it.
 
-    INIT -> STANDBY <-> ACTIVE <-> DEGRADED -> FAULT -> STANDBY
+    INIT -> STANDBY <-> ACTIVE <-> DEGRADED -> FAULT, and from the last two back to STANDBY
 
-Every input is judged by the cycles it has missed: up to ``bridged_cycles`` the
-last value serves, beyond that nothing may be raised (DEGRADED), beyond
-``tolerated_cycles`` the torque is handed back to the driver (FAULT).
+``RULES`` is the table: what is watched and what follows from it; the first rule
+that holds is the reason.  STANDBY is ACTIVE while a motor is held below what the
+driver asks.  The way back takes ``good_ticks_to_recover``: out of INIT and FAULT
+of ticks that controllers may follow, out of DEGRADED of ticks without any reason.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Callable
 from enum import IntEnum
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import msgspec
 
+from tcs_hil.control.protocol import Proposal, Source
+from tcs_hil.fault_codes import FaultCode
 from tcs_hil.gate import Permission
-from tcs_hil.signals import Measurement, TcsState
+from tcs_hil.signals import BusCondition, InputState, Measurement, Suspect, TcsState
 
 PERIOD_S = 0.002
 DRIVER_CYCLE_S = 0.010
 
+WHEEL_BITS = (Suspect.WHEEL_FL, Suspect.WHEEL_FR, Suspect.WHEEL_RL, Suspect.WHEEL_RR)
+FRONTS = Suspect.WHEEL_FL | Suspect.WHEEL_FR
+REARS = Suspect.WHEEL_RL | Suspect.WHEEL_RR
+MOTORS = Suspect.MOTOR_LEFT | Suspect.MOTOR_RIGHT
 
-class FaultCode(IntEnum):
-    """Why the service is neither in STANDBY nor ACTIVE; the value travels in ``TcsFaultCode``."""
+AWAITING = FaultCode.AWAITING_INPUT
+VALID = InputState.VALID
+NOT_YET = (InputState.NO_DATA, InputState.INIT)
 
-    NONE = 0
-    FRONT_SPEED_LATE = 1
-    REAR_SPEED_LATE = 2
-    DRIVER_REQUEST_LATE = 3
-    ONE_REAR_SPEED_INVALID = 4
-    REAR_SPEEDS_INVALID = 5
-    FRONT_SPEED_INVALID = 6
-    CONTROLLER_FAILED = 7
-    INTERNAL_ERROR = 8
+Cycles = Annotated[int, msgspec.Meta(ge=0, le=100)]
+Ticks = Annotated[int, msgspec.Meta(ge=1, le=1000)]
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class SupervisorSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Patience of the supervisor.
+
+    Cycles are those of the input concerned: up to ``bridged_cycles`` the last
+    value serves, beyond ``tolerated_cycles`` it is lost.  A controller may be
+    silent for as many ticks.
+    """
+
+    bridged_cycles: Cycles = 2
+    tolerated_cycles: Cycles = 10
+    good_ticks_to_recover: Ticks = 10
+    overruns_to_degrade: Ticks = 5
+
+
+class Health(IntEnum):
+    """What has become of one message, by its age and by its end-to-end protection."""
+
+    GOOD = 0
+    LATE = 1
+    LOST = 2
+    CORRUPT = 3
+    AWAITED = 4
+    ABSENT = 5  # the car has no such message, and nobody expects it
+
+
+class Situation(NamedTuple):
+    """What the rules look at in one tick."""
+
+    front: Health
+    rear: Health
+    motor: Health
+    driver: Health
+    suspects: int  # bits of Suspect: implausible
+    unusable: int  # the same, and wheels whose sensor says that it fails
+    bus: BusCondition
+    overrunning: bool = False
+    replaced: bool = False  # something stood in for a law
+    silent: bool = False  # a law could not decide, and nothing stood in for it
+    mute: bool = False  # that has lasted too long
+    broken: bool = False  # our own code raised
+
+
+class Rule(NamedTuple):
+    """While ``holds``, the service is in ``state`` for the reason ``code``."""
+
+    code: FaultCode
+    state: TcsState
+    permission: Permission
+    holds: Callable[[Situation], bool]
+
+
+class Verdict(NamedTuple):
     """State, reason and permission for one tick."""
 
     state: TcsState
@@ -45,75 +97,179 @@ class Verdict:
     permission: Permission
 
 
-class SupervisorSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Patience of the supervisor, in cycles of the input concerned."""
+GOOD, LATE, LOST, CORRUPT, AWAITED, ABSENT = Health
+MISSING = frozenset((AWAITED, ABSENT))
+FAULT, DEGRADED = TcsState.FAULT, TcsState.DEGRADED
+RELEASE, HOLD, SLOWLY = Permission.RELEASE, Permission.HOLD, Permission.FOLLOW_SLOWLY
 
-    bridged_cycles: Annotated[int, msgspec.Meta(ge=0)] = 2
-    tolerated_cycles: Annotated[int, msgspec.Meta(ge=1)] = 10
-    good_ticks_to_recover: Annotated[int, msgspec.Meta(ge=1)] = 10
+# fmt: off
+RULES: tuple[Rule, ...] = (
+    Rule(FaultCode.INTERNAL_ERROR, FAULT, RELEASE, lambda s: s.broken),
+    Rule(FaultCode.BUS_INTRUDER, FAULT, RELEASE, lambda s: s.bus is BusCondition.INTRUDER),
+    Rule(FaultCode.BUS_OFF, FAULT, RELEASE, lambda s: s.bus is BusCondition.BUS_OFF),
+    Rule(FaultCode.BUS_DOWN, FAULT, RELEASE, lambda s: s.bus is BusCondition.DOWN),
+    Rule(FaultCode.AWAITING_INPUT, FAULT, RELEASE,
+         lambda s: not MISSING.isdisjoint((s.rear, s.front, s.driver))),
+    Rule(FaultCode.REAR_SPEED_CORRUPT, FAULT, RELEASE, lambda s: s.rear is CORRUPT),
+    Rule(FaultCode.FRONT_SPEED_CORRUPT, FAULT, RELEASE, lambda s: s.front is CORRUPT),
+    Rule(FaultCode.DRIVER_REQUEST_CORRUPT, FAULT, RELEASE, lambda s: s.driver is CORRUPT),
+    Rule(FaultCode.REAR_SPEED_LOST, FAULT, RELEASE, lambda s: s.rear is LOST),
+    Rule(FaultCode.FRONT_SPEED_LOST, FAULT, RELEASE, lambda s: s.front is LOST),
+    Rule(FaultCode.DRIVER_REQUEST_LOST, FAULT, RELEASE, lambda s: s.driver is LOST),
+    Rule(FaultCode.REAR_SPEEDS_IMPLAUSIBLE, FAULT, RELEASE, lambda s: s.suspects & REARS == REARS),
+    Rule(FaultCode.REAR_SPEEDS_INVALID, FAULT, RELEASE, lambda s: s.unusable & REARS == REARS),
+    Rule(FaultCode.FRONT_WHEEL_UNKNOWN, FAULT, RELEASE,
+         lambda s: bool(s.unusable & FRONTS)
+         and (s.motor is not GOOD or bool(s.suspects & MOTORS))),
+    Rule(FaultCode.DRIVER_REQUEST_IMPLAUSIBLE, FAULT, RELEASE,
+         lambda s: bool(s.suspects & Suspect.DRIVER)),
+    Rule(FaultCode.CONTROLLER_LOST, FAULT, RELEASE, lambda s: s.mute),
+
+    Rule(FaultCode.REAR_SPEED_LATE, DEGRADED, HOLD, lambda s: s.rear is LATE),
+    Rule(FaultCode.FRONT_SPEED_LATE, DEGRADED, HOLD, lambda s: s.front is LATE),
+    Rule(FaultCode.DRIVER_REQUEST_LATE, DEGRADED, HOLD, lambda s: s.driver is LATE),
+    Rule(FaultCode.CONTROLLER_SILENT, DEGRADED, HOLD, lambda s: s.silent),
+
+    Rule(FaultCode.ONE_REAR_SPEED_IMPLAUSIBLE, DEGRADED, SLOWLY,
+         lambda s: bool(s.suspects & REARS)),
+    Rule(FaultCode.ONE_REAR_SPEED_INVALID, DEGRADED, SLOWLY, lambda s: bool(s.unusable & REARS)),
+    Rule(FaultCode.FRONT_SPEED_IMPLAUSIBLE, DEGRADED, SLOWLY, lambda s: bool(s.suspects & FRONTS)),
+    Rule(FaultCode.FRONT_SPEED_INVALID, DEGRADED, SLOWLY, lambda s: bool(s.unusable & FRONTS)),
+    Rule(FaultCode.MOTOR_STATE_IMPLAUSIBLE, DEGRADED, SLOWLY, lambda s: bool(s.suspects & MOTORS)),
+    Rule(FaultCode.MOTOR_STATE_CORRUPT, DEGRADED, SLOWLY, lambda s: s.motor is CORRUPT),
+    Rule(FaultCode.MOTOR_STATE_LATE, DEGRADED, SLOWLY,
+         lambda s: s.motor not in (GOOD, ABSENT)),
+    Rule(FaultCode.ACCELERATION_IMPLAUSIBLE, DEGRADED, SLOWLY,
+         lambda s: bool(s.suspects & Suspect.ACCELEROMETER)),
+    Rule(FaultCode.CONTROLLER_REPLACED, DEGRADED, SLOWLY, lambda s: s.replaced),
+    Rule(FaultCode.OVERRUNS, DEGRADED, SLOWLY, lambda s: s.overrunning),
+    Rule(FaultCode.BUS_ERROR_PASSIVE, DEGRADED, SLOWLY,
+         lambda s: s.bus is BusCondition.ERROR_PASSIVE),
+    Rule(FaultCode.SEND_FAILED, DEGRADED, SLOWLY, lambda s: s.bus is BusCondition.SEND_FAILED),
+    Rule(FaultCode.BUS_OVERFLOW, DEGRADED, SLOWLY, lambda s: s.bus is BusCondition.OVERFLOW),
+)
+# fmt: on
+"""The state table, worst first.  Whoever raises the torque must be trusted; lowering it is free."""
+
+CALM = Situation(GOOD, GOOD, GOOD, GOOD, 0, 0, BusCondition.OK)
+"""Of almost every tick; no rule holds, so none is tried."""
+
+
+def first_reason(situation: Situation) -> Rule | None:
+    """The worst rule that holds, None where all is well."""
+    if situation == CALM:
+        return None
+    return next((rule for rule in RULES if rule.holds(situation)), None)
 
 
 class Supervisor:
-    """State machine of the service; one call a tick."""
+    """State machine of the service; ``judge`` once a tick, before the controllers are asked."""
 
     def __init__(self, settings: SupervisorSettings) -> None:
         self._settings = settings
-        self._verdict = Verdict(TcsState.INIT, FaultCode.NONE, Permission.RELEASE)
-        self._good_ticks = 0
+        self._before = TcsState.INIT  # state of the tick before
+        self._verdict = Verdict(TcsState.INIT, FaultCode.NONE, RELEASE)
+        self._situation = CALM
+        self._reason: Rule | None = None
+        self._trusted_ticks = 0  # without a reason, or followed slowly for one
+        self._calm_ticks = 0  # without a reason
+        self._silent_ticks = 0
+        self._overruns = 0
 
-    def judge(self, measurement: Measurement) -> Verdict:
-        """Judge the inputs before control: may the controllers be heard at all?"""
-        degraded, fault = self._input_faults(measurement)
-        self._good_ticks = 0 if fault or degraded else self._good_ticks + 1
-        state = self._verdict.state
-        recovering = state in (TcsState.INIT, TcsState.FAULT)
-        if recovering and self._good_ticks < self._settings.good_ticks_to_recover:
-            reason = fault or degraded or self._verdict.fault_code
-            return self._settle(state, reason, Permission.RELEASE)
-        if fault:
-            return self._settle(TcsState.FAULT, fault, Permission.RELEASE)
-        if degraded:
-            return self._settle(TcsState.DEGRADED, degraded, Permission.HOLD)
-        return self._settle(TcsState.STANDBY, FaultCode.NONE, Permission.FOLLOW)
+    def judge(self, measurement: Measurement, suspects: int = 0) -> Verdict:
+        """Judge the inputs; ``suspects`` are the bits of those found implausible."""
+        self._before = self._verdict.state
+        self._situation = self._look(measurement, suspects)
+        self._trusted_ticks += 1
+        self._calm_ticks += 1
+        return self._settle(first_reason(self._situation))
 
-    def controller_failed(self) -> Verdict:
-        """A law could not decide: nothing may be raised this tick."""
-        return self._settle(TcsState.DEGRADED, FaultCode.CONTROLLER_FAILED, Permission.HOLD)
+    def heard(self, proposals: tuple[Proposal, Proposal]) -> Verdict:
+        """Judge how the controllers fared; only to be called when they were asked."""
+        undecided = [p.source for p in proposals if not p.decided]
+        silent = Source.LAW in undecided
+        self._silent_ticks = self._silent_ticks + 1 if silent else 0
+        if not undecided:
+            return self._verdict
+        mute = self._silent_ticks > self._settings.tolerated_cycles
+        situation = self._situation._replace(replaced=True, silent=silent, mute=mute)
+        return self._settle(first_reason(situation))
 
     def internal_error(self) -> Verdict:
         """Our own code broke: hand the torque back and begin again."""
-        self._good_ticks = 0
-        return self._settle(TcsState.FAULT, FaultCode.INTERNAL_ERROR, Permission.RELEASE)
+        return self._settle(first_reason(self._situation._replace(broken=True)))
 
     def limiting(self) -> Verdict:
-        """The gate holds a motor below the request: STANDBY has become ACTIVE."""
-        if self._verdict.state is TcsState.STANDBY:
-            self._verdict = replace(self._verdict, state=TcsState.ACTIVE)
+        """The gate holds a motor below the request: STANDBY, once it was shown, is ACTIVE."""
+        shown = self._before in (TcsState.STANDBY, TcsState.ACTIVE)
+        if shown and self._verdict.state is TcsState.STANDBY:
+            self._verdict = self._verdict._replace(state=TcsState.ACTIVE)
         return self._verdict
 
-    def _settle(self, state: TcsState, code: FaultCode, permission: Permission) -> Verdict:
-        self._verdict = Verdict(state, code, permission)
-        return self._verdict
+    def sent(self, overran: bool) -> None:
+        """Hear, after the tick, whether its limits went out after the deadline."""
+        self._overruns = self._overruns + 1 if overran else 0
 
-    def _input_faults(self, m: Measurement) -> tuple[FaultCode, FaultCode]:
-        """First reason to degrade and first reason to fail; NONE where there is none."""
-        late = (
-            (m.rear_speed_age_s / PERIOD_S, FaultCode.REAR_SPEED_LATE),
-            (m.front_speed_age_s / PERIOD_S, FaultCode.FRONT_SPEED_LATE),
-            (m.driver_age_s / DRIVER_CYCLE_S, FaultCode.DRIVER_REQUEST_LATE),
+    def _look(self, m: Measurement, suspects: int) -> Situation:
+        return Situation(
+            self._health(m.front_speed_state, m.front_speed_age_s / PERIOD_S),
+            self._health(m.rear_speed_state, m.rear_speed_age_s / PERIOD_S),
+            self._motor_health(m),
+            self._health(m.driver_state, m.driver_age_s / DRIVER_CYCLE_S),
+            suspects,
+            suspects if all(m.wheel_speed_valid) else suspects | _failing(m),
+            m.bus,
+            self._overruns >= self._settings.overruns_to_degrade,
         )
-        degraded = self._first_later_than(self._settings.bridged_cycles, late)
-        fault = self._first_later_than(self._settings.tolerated_cycles, late)
-        *front, rl, rr = m.wheel_speed_valid
-        if not (rl or rr):
-            fault = fault or FaultCode.REAR_SPEEDS_INVALID
-        elif not (rl and rr):
-            degraded = degraded or FaultCode.ONE_REAR_SPEED_INVALID
-        if not all(front):
-            degraded = degraded or FaultCode.FRONT_SPEED_INVALID
-        return degraded, fault
 
-    @staticmethod
-    def _first_later_than(cycles: int, late: tuple[tuple[float, FaultCode], ...]) -> FaultCode:
+    def _motor_health(self, m: Measurement) -> Health:
+        """The one input that a car may do without."""
+        if m.motor_state is InputState.ABSENT:
+            return ABSENT
+        return self._health(m.motor_state, m.motor_age_s / PERIOD_S)
+
+    def _health(self, state: InputState, cycles: float) -> Health:
         # The newest frame may be almost a cycle old without any being lost.
-        return next((code for missed, code in late if missed >= cycles + 1), FaultCode.NONE)
+        if state is VALID and cycles < self._settings.bridged_cycles + 1:
+            return GOOD
+        if state in NOT_YET or cycles == math.inf:
+            return AWAITED
+        if cycles >= self._settings.tolerated_cycles + 1:
+            return LOST
+        return LATE if state is VALID else CORRUPT
+
+    def _settle(self, reason: Rule | None) -> Verdict:
+        if reason is not None:
+            self._calm_ticks = 0
+            if reason.permission is not SLOWLY:
+                self._trusted_ticks = 0
+        state, permission = self._next(reason)
+        self._verdict = Verdict(state, self._code(state, reason), permission)
+        return self._verdict
+
+    def _next(self, reason: Rule | None) -> tuple[TcsState, Permission]:
+        enough = self._settings.good_ticks_to_recover
+        awaiting = self._before is TcsState.INIT and reason is not None and reason.code is AWAITING
+        if reason is not None and reason.state is FAULT and not awaiting:
+            return FAULT, RELEASE
+        if self._before in (TcsState.INIT, FAULT):
+            # STANDBY is shown for a tick before anybody is followed.
+            recovered = self._trusted_ticks >= enough
+            return (TcsState.STANDBY if recovered else self._before), RELEASE
+        if reason is not None:
+            return DEGRADED, reason.permission
+        if self._before is DEGRADED and self._calm_ticks < enough:
+            return DEGRADED, SLOWLY
+        return TcsState.STANDBY, Permission.FOLLOW
+
+    def _code(self, state: TcsState, reason: Rule | None) -> FaultCode:
+        """The reason of a state as long as it lasts, even while the way back is under way."""
+        if state is TcsState.STANDBY:
+            return FaultCode.NONE
+        news = reason is not None and (reason.state is state or state is TcsState.INIT)
+        return reason.code if reason is not None and news else self._verdict.fault_code
+
+
+def _failing(m: Measurement) -> int:
+    """Bits of the wheels whose sensors say that they fail."""
+    return sum(bit for bit, ok in zip(WHEEL_BITS, m.wheel_speed_valid, strict=True) if not ok)

@@ -5,11 +5,13 @@ from factories import measurement
 
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
 from tcs_hil.estimator import Estimator
+from tcs_hil.fault_codes import FaultCode
 from tcs_hil.gate import Gate, GateSettings
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.pipeline import Law, Pipeline
+from tcs_hil.plausibility import Plausibility
 from tcs_hil.signals import NO_LIMIT, ControllerKind, TcsState, TorqueLimits
-from tcs_hil.supervisor import FaultCode, Supervisor, SupervisorSettings
+from tcs_hil.supervisor import Supervisor, SupervisorSettings
 
 
 class Scripted:
@@ -36,12 +38,13 @@ def laws() -> tuple[Scripted, Scripted]:
 @pytest.fixture
 def pipeline(laws: tuple[Scripted, Scripted]) -> Pipeline:
     built = Pipeline(
+        Plausibility(Vehicle(), 0.002),
         Estimator(Vehicle()),
         Supervisor(SupervisorSettings()),
         Law(ControllerKind.KMPC, 0.1, laws),
         (Gate(GateSettings(), 0.002), Gate(GateSettings(), 0.002)),
     )
-    for _ in range(10):
+    for _ in range(12):
         built.step(measurement())
     return built
 
@@ -57,6 +60,7 @@ def test_no_motor_is_limited_before_the_inputs_are_trusted(
     laws: tuple[Scripted, Scripted],
 ) -> None:
     pipeline = Pipeline(
+        Plausibility(Vehicle(), 0.002),
         Estimator(Vehicle()),
         Supervisor(SupervisorSettings()),
         Law(ControllerKind.KMPC, 0.1, laws),
@@ -76,7 +80,7 @@ def test_a_failed_solve_holds_the_ceiling_and_says_so(
     assert command.limits.left_nm == 60.0
     assert (command.state, command.fault_code) == (
         TcsState.DEGRADED,
-        FaultCode.CONTROLLER_FAILED,
+        FaultCode.CONTROLLER_SILENT,
     )
 
 

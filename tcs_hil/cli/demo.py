@@ -79,7 +79,7 @@ def _show(demo: Demo) -> None:
         console.print(_table(COLUMNS, demo.outcomes))
         return
     console.print(_table(RUN_COLUMNS | SLIP_COLUMNS, demo.outcomes))
-    timed = [outcome for outcome in demo.outcomes if outcome.mode == "realtime"]
+    timed = [outcome for outcome in demo.outcomes if outcome.choice.mode == "real-time"]
     console.print(_table(RUN_COLUMNS | TIMING_COLUMNS, timed))
 
 

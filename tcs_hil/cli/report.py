@@ -49,7 +49,7 @@ def command(recording: Path, worst: int, histograms: Path | None, as_json: bool)
         click.echo(json.dumps(summary.as_dict() | listed))
         return
     info = read_info(recording)
-    click.echo(f"{info.controller} on {info.bus}, {info.machine}")
+    click.echo(f"{info.controller} ({info.backend}) on {info.bus}, {info.machine}")
     print_summary(summary)
     if worst:
         print_worst(bad_ticks)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
+from plant_emulator.scenario import Variant, load_scenario
 from tcs_hil.canbus.bus import choose_interface, open_bus
-from tcs_hil.control.settings import PresetName
+from tcs_hil.control.settings import ControlSettings, PresetName
 from tcs_hil.hil.figures import Line, save_prediction_figure, save_slip_figure
 from tcs_hil.hil.metrics import SlipMetrics, Truth, slip_metrics
 from tcs_hil.hil.paper import MANOEUVRES
@@ -17,26 +18,34 @@ from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.model.evaluation import figure1
 from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
 from tcs_hil.runtime.summary import Summary, summarise
-from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.settings import BusSettings, ControllerName, ServiceConfig
 
-CONTROLLERS = ("off", "pi", "kmpc", "nmpc")
-MODES: tuple[Mode, ...] = ("lockstep", "realtime")
-QUARTER_CAR, WHOLE_CAR = "quarter-car", "vehicle"
-PREDICTIVE = ("kmpc", "nmpc")
+CONTROLLERS: tuple[ControllerName, ...] = ("off", "pi", "kmpc", "nmpc")
+MODES: tuple[Mode, ...] = ("lockstep", "real-time")
+QUARTER_CAR: Variant = "quarter-car"
+WHOLE_CAR: Variant = "vehicle"
+PREDICTIVE: tuple[ControllerName, ...] = ("kmpc", "nmpc")
 PRESETS: tuple[PresetName, ...] = ("paper", "default")
 
 Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True, slots=True)
+class Choice:
+    """What distinguishes one run from the others."""
+
+    manoeuvre: str
+    car: Variant
+    controller: ControllerName
+    preset: PresetName
+    mode: Mode
+
+
+@dataclass(frozen=True, slots=True)
 class Outcome:
     """One run and what came of it."""
 
-    manoeuvre: str
-    car: str
-    controller: str
-    preset: PresetName
-    mode: Mode
+    choice: Choice
     truth: Truth
     slip: SlipMetrics
     timing: Summary
@@ -65,37 +74,32 @@ def run_demo(folder: Path, interface: str, channel: str | None, progress: Progre
         channel = f"vcan-demo-{os.getpid()}" if found == "embedded" else "vcan0"
     bus, description = open_bus(interface, channel)
     bus.shutdown()
-    plans = list(_plans(folder, interface, channel))
+    choices, settings = list(_choices()), BusSettings(interface=interface, channel=channel)
     outcomes = []
-    for done, plan in enumerate(plans):
-        progress(done / len(plans), f"{plan.scenario} {plan.vehicle} {plan.controller} {plan.mode}")
-        outcomes.append(_outcome(plan))
+    for done, choice in enumerate(choices):
+        words = (choice.manoeuvre, choice.car, choice.controller, choice.preset, choice.mode)
+        progress(done / len(choices), " ".join(words))
+        outcomes.append(_outcome(choice, settings, folder / "runs" / "-".join(words)))
     return Demo(description, tuple(outcomes), _draw(folder, outcomes))
 
 
-def _plans(folder: Path, interface: str, channel: str) -> Iterator[RunPlan]:
+def _choices() -> Iterator[Choice]:
     """The paper's experiment, and its laws on a car with driveline, sensors and delay."""
-
-    def plan(manoeuvre: str, car: str, controller: str, preset: PresetName, mode: Mode) -> RunPlan:
-        run_folder = folder / "runs" / f"{manoeuvre}-{car}-{controller}-{preset}-{mode}"
-        return RunPlan(manoeuvre, car, controller, mode, run_folder, interface, channel, preset)
-
     for mode, manoeuvre, controller in product(MODES, MANOEUVRES, CONTROLLERS):
-        yield plan(manoeuvre, QUARTER_CAR, controller, "paper", mode)
+        yield Choice(manoeuvre, QUARTER_CAR, controller, "paper", mode)
     for controller, preset in product(PREDICTIVE, PRESETS):
-        yield plan("manoeuvre-1", WHOLE_CAR, controller, preset, "lockstep")
+        yield Choice("manoeuvre-1", WHOLE_CAR, controller, preset, "lockstep")
 
 
-def _outcome(plan: RunPlan) -> Outcome:
-    files = execute(plan)
+def _outcome(choice: Choice, bus: BusSettings, folder: Path) -> Outcome:
+    config = ServiceConfig(
+        controller=choice.controller, bus=bus, control=ControlSettings(preset=choice.preset)
+    )
+    scenario = load_scenario(choice.manoeuvre).with_variant(choice.car)
+    files = execute(RunPlan(scenario, config, choice.mode, folder))
     truth = files.read_truth()
-    config = ServiceConfig()
     return Outcome(
-        manoeuvre=plan.scenario,
-        car=plan.vehicle,
-        controller=plan.controller,
-        preset=plan.preset,
-        mode=plan.mode,
+        choice=choice,
         truth=truth,
         slip=slip_metrics(truth, config.control.slip_reference, config.vehicle),
         timing=summarise(files.read_flight()),
@@ -105,16 +109,16 @@ def _outcome(plan: RunPlan) -> Outcome:
 def _draw(folder: Path, outcomes: list[Outcome]) -> dict[str, Path]:
     reference = ServiceConfig().control.slip_reference
     predictor = KoopmanPredictor.load(default_model_path(), ServiceConfig().control.period_s)
-    in_lockstep = [outcome for outcome in outcomes if outcome.mode == "lockstep"]
+    in_lockstep = [outcome for outcome in outcomes if outcome.choice.mode == "lockstep"]
     figures = {}
 
     def draw(name: str, title: str, manoeuvre: str, car: str, controllers: Collection[str]) -> None:
         """Lockstep runs only: the figures must not depend on the machine's mood."""
         runs = [
-            Line(outcome.controller, outcome.preset, outcome.truth)
+            Line(outcome.choice.controller, outcome.choice.preset, outcome.truth)
             for outcome in in_lockstep
-            if (outcome.manoeuvre, outcome.car) == (manoeuvre, car)
-            and outcome.controller in controllers
+            if (outcome.choice.manoeuvre, outcome.choice.car) == (manoeuvre, car)
+            and outcome.choice.controller in controllers
         ]
         path = folder / f"{name}.png"
         save_slip_figure(path, MANOEUVRES[manoeuvre], runs, reference)

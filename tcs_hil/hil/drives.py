@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import can
 import numpy as np
-from can.io.blf import BLFParseError
 from numpy.typing import NDArray
 
 from tcs_hil.canbus.database import Database, load_database
@@ -18,6 +16,7 @@ from tcs_hil.canbus.vehicle_node import VehicleNode
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
 from tcs_hil.estimator.fused import FusedEstimator
+from tcs_hil.hil.logs.bus_log import read_log, stamp_ns
 from tcs_hil.model.excitation import Runs
 from tcs_hil.model.observables import Sample
 from tcs_hil.model.vehicle import Vehicle
@@ -25,10 +24,6 @@ from tcs_hil.signals import Pair
 
 FloatArray = NDArray[np.float64]
 
-UNREADABLE = (ValueError, NotImplementedError, can.CanError, BLFParseError, struct.error)
-"""What python-can raises for a file of an unknown or damaged format."""
-
-NS_PER_S = 1e9
 CSV_COLUMNS = (
     "speed_mps",
     "wheel_speed_radps",
@@ -72,12 +67,12 @@ def _ticks(path: Path, settings: ControlSettings, vehicle: Vehicle) -> Iterator[
     estimator = FusedEstimator(settings, vehicle)
     last_id = database.messages["WheelSpeedsRear"].frame_id
     for message in _frames(path, database):
-        stamp_ns = round(message.timestamp * NS_PER_S)
-        car.feed(message.arbitration_id, bytes(message.data), stamp_ns)
-        good = service.feed(message.arbitration_id, bytes(message.data), stamp_ns)
+        now_ns = stamp_ns(message)
+        car.feed(message.arbitration_id, bytes(message.data), now_ns)
+        good = service.feed(message.arbitration_id, bytes(message.data), now_ns)
         if not (good and message.arbitration_id == last_id):
             continue
-        measurement = service.measurement(stamp_ns)
+        measurement = service.measurement(now_ns)
         request_nm = measurement.driver_torque_nm
         command_nm = (min(request_nm[0], car.limits[0]), min(request_nm[1], car.limits[1]))
         estimator.sent(command_nm, request_nm)
@@ -112,15 +107,7 @@ def _aligned(ticks: list[_Tick], period_s: float) -> Runs:
 
 def _frames(path: Path, database: Database) -> Iterator[can.Message]:
     known = {message.frame_id for message in database.messages.values()}
-    try:
-        with can.LogReader(str(path)) as reader:
-            for message in reader:
-                if message.arbitration_id in known and not message.is_error_frame:
-                    yield message
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from error
-    except UNREADABLE as error:
-        raise ConfigError(f"{path}: no recording python-can can read here ({error})") from error
+    return (message for message in read_log(path) if message.arbitration_id in known)
 
 
 def _read_csv(path: Path, vehicle: Vehicle) -> Runs:

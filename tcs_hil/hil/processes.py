@@ -1,19 +1,24 @@
-"""Starting and stopping the programs of a run; readiness through sd_notify, as under systemd."""
+"""Starting and stopping the programs of a run; readiness through sd_notify, as under systemd.
+
+Programs are forked off a server that has imported and compiled everything, so
+that a suite of many short runs does not spend its time on starting Python.
+"""
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import socket
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from multiprocessing.context import ForkServerContext
 from pathlib import Path
 from types import FrameType
 
 from tcs_hil.errors import TcsError
+from tcs_hil.hil.child import run_module
 
 READY_TIMEOUT_S = 60.0
 STOP_TIMEOUT_S = 10.0
@@ -23,20 +28,26 @@ class ProcessError(TcsError):
     """A program of the bench ended early or would not start."""
 
 
+def fork_server() -> ForkServerContext:
+    """The context of processes that start with everything loaded."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tcs_hil.hil.warm"])
+    return context
+
+
 class Program:
     """A running child; its output goes to ``log``, which an error quotes the end of."""
 
     def __init__(self, arguments: Sequence[str], log: Path, environment: dict[str, str]) -> None:
         self._name = " ".join(arguments[:2])
         self._log = log
-        with log.open("wb") as output:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "tcs_hil.hil.child", *arguments],
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                stdin=subprocess.DEVNULL,
-                env=os.environ | environment,
-            )
+        log.write_bytes(b"")
+        self._process = fork_server().Process(
+            target=run_module,
+            args=(arguments, log.absolute(), Path.cwd(), dict(os.environ) | environment),
+            daemon=True,
+        )
+        self._process.start()
 
     def wait(self, timeout_s: float) -> None:
         """Wait for an end of its own accord.
@@ -44,12 +55,11 @@ class Program:
         Raises:
             ProcessError: it failed, or still runs after ``timeout_s``.
         """
-        try:
-            status = self._process.wait(timeout_s)
-        except subprocess.TimeoutExpired:
-            raise ProcessError(f"{self._name} still runs after {timeout_s:g} s") from None
-        if status != 0:
-            raise self.failure(f"ended with status {status}")
+        self._process.join(timeout_s)
+        if self.running:
+            raise ProcessError(f"{self._name} still runs after {timeout_s:g} s")
+        if self._process.exitcode != 0:
+            raise self.failure(f"ended with status {self._process.exitcode}")
 
     def end(self) -> None:
         """Stop it as a matter of course.
@@ -58,24 +68,23 @@ class Program:
             ProcessError: it had already failed, or failed in stopping.
         """
         self.stop()
-        if self._process.returncode != 0:
-            raise self.failure(f"ended with status {self._process.returncode}")
+        if self._process.exitcode != 0:
+            raise self.failure(f"ended with status {self._process.exitcode}")
 
     def stop(self) -> None:
         """Ask it to stop and wait until it has; a program that will not is killed."""
-        if self._process.poll() is not None:
+        if not self.running:
             return
-        self._process.send_signal(signal.SIGTERM)
-        try:
-            self._process.wait(STOP_TIMEOUT_S)
-        except subprocess.TimeoutExpired:
+        self._process.terminate()
+        self._process.join(STOP_TIMEOUT_S)
+        if self.running:
             self._process.kill()
-            self._process.wait()
+            self._process.join()
 
     @property
     def running(self) -> bool:
         """Whether it has not ended yet."""
-        return self._process.poll() is None
+        return self._process.is_alive()
 
     def failure(self, what: str) -> ProcessError:
         """An error that quotes the last line the program printed."""

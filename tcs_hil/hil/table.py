@@ -23,7 +23,9 @@ def _law(outcome: Outcome) -> str:
 
 
 def _paper(outcome: Outcome) -> str:
-    reported = _REPORTED.get((outcome.preset, outcome.manoeuvre, outcome.controller))
+    reported = _REPORTED.get(
+        (outcome.choice.preset, outcome.choice.manoeuvre, outcome.choice.controller)
+    )
     return "-" if reported is None else f"{reported.mean_us:g} / {reported.max_us:g}"
 
 
@@ -31,7 +33,7 @@ def _in_real_time(times: Callable[[Outcome], Percentiles | None]) -> Callable[[O
     """Percentiles that mean something only where a clock, not the bench, sets the pace."""
 
     def text(outcome: Outcome) -> str:
-        found = times(outcome) if outcome.mode == "realtime" else None
+        found = times(outcome) if outcome.choice.mode == "real-time" else None
         if found is None:
             return "-"
         return " / ".join(
@@ -44,11 +46,11 @@ def _in_real_time(times: Callable[[Outcome], Percentiles | None]) -> Callable[[O
 Columns = dict[str, Callable[[Outcome], str]]
 
 RUN_COLUMNS: Columns = {
-    "manoeuvre": lambda o: o.manoeuvre,
-    "car": lambda o: o.car,
-    "controller": lambda o: o.controller.upper(),
-    "preset": lambda o: o.preset,
-    "pace": lambda o: "real time" if o.mode == "realtime" else "lockstep",
+    "manoeuvre": lambda o: o.choice.manoeuvre,
+    "car": lambda o: o.choice.car,
+    "controller": lambda o: o.choice.controller.upper(),
+    "preset": lambda o: o.choice.preset,
+    "pace": lambda o: "real time" if o.choice.mode == "real-time" else "lockstep",
 }
 SLIP_COLUMNS: Columns = {
     "slip RMSE": lambda o: _slip(o.slip.rmse_ratio),
@@ -61,7 +63,7 @@ TIMING_COLUMNS: Columns = {
     "paper's mean / max µs": _paper,
     "latency p50 / p99 / p99.9 / max µs": _in_real_time(lambda o: o.timing.latency),
     "jitter p50 / p99 / p99.9 / max µs": _in_real_time(lambda o: o.timing.wake_jitter),
-    "overruns": lambda o: str(o.timing.overruns) if o.mode == "realtime" else "-",
+    "overruns": lambda o: str(o.timing.overruns) if o.choice.mode == "real-time" else "-",
 }
 COLUMNS: Columns = RUN_COLUMNS | SLIP_COLUMNS | TIMING_COLUMNS
 
@@ -82,11 +84,11 @@ def markdown(outcomes: Iterable[Outcome]) -> str:
 def as_dict(outcome: Outcome) -> dict[str, Any]:
     """One run's figures as numbers, for JSON."""
     return {
-        "manoeuvre": outcome.manoeuvre,
-        "car": outcome.car,
-        "controller": outcome.controller,
-        "preset": outcome.preset,
-        "pace": outcome.mode,
+        "manoeuvre": outcome.choice.manoeuvre,
+        "car": outcome.choice.car,
+        "controller": outcome.choice.controller,
+        "preset": outcome.choice.preset,
+        "pace": outcome.choice.mode,
         "slip": asdict(outcome.slip),
         "timing": outcome.timing.as_dict(),
     }

@@ -95,7 +95,11 @@ class Lifting:
 
     def lift(self, s_mps: Any, omega_radps: Any) -> FloatArray:
         """Lifted state (nz,) of one state given as floats, or (n, nz) of columns (n,)."""
+        return np.array(self.observables(s_mps, omega_radps)).T
+
+    def observables(self, s_mps: Any, omega_radps: Any) -> list[Any]:
+        """The nz elements of the lifted state, as floats or columns (n,)."""
         s = self.scaling.scale_s(s_mps)
         omega = self.scaling.scale_omega(omega_radps)
         kappa = slip_ratio(s_mps, omega_radps, self.vehicle)
-        return np.array(self.dictionary.observables(s, omega, kappa)).T
+        return self.dictionary.observables(s, omega, kappa)

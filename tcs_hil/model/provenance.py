@@ -94,7 +94,7 @@ def provenance_of(path: Path, metadata: bytes, struct: type[T], kind: str) -> T:
         raise ModelError(f"model file '{path}' holds a {found}, but a {kind} is needed")
     try:
         return msgspec.json.decode(metadata, type=struct)
-    except msgspec.DecodeError as error:
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise ModelError(f"model file '{path}' has bad metadata: {error}") from error
 
 

@@ -98,6 +98,7 @@ def _of_the_newest(tick: np.void, now_ns: int) -> Iterator[Metric]:
     age_s = (now_ns - int(tick["sent_ns"])) * S_PER_NS
     yield _gauge("last_tick_age_seconds", "Time since the newest tick.", age_s)
     yield _gauge("fault_code", "Fault of the supervisor; zero is none.", int(tick["fault_code"]))
+    yield _gauge("bus_condition", "Condition of the bus; zero is fine.", int(tick["bus_condition"]))
     yield _gauge("vehicle_speed_mps", "As estimated.", float(tick["vehicle_speed_mps"]))
     yield _state(TcsState(tick["state"]))
     for name, (template, what) in PER_WHEEL.items():

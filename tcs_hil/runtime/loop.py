@@ -12,6 +12,7 @@ from tcs_hil.runtime.clock import Clock
 from tcs_hil.runtime.record import Insight, Pass, Record, Stamps, record
 from tcs_hil.runtime.seams import Node, Pipeline, Port
 from tcs_hil.runtime.stopwatch import TimedController
+from tcs_hil.runtime.transitions import TransitionLog
 from tcs_hil.runtime.trigger import Tick, Trigger
 from tcs_hil.signals import Command, Measurement
 
@@ -37,6 +38,7 @@ class Loop:
     healthy: Callable[[int], None]
     overruns: int = field(default=0, init=False)
     failures: int = field(default=0, init=False)
+    transitions: TransitionLog = field(default_factory=TransitionLog, init=False)
 
     def run(self, stop_requested: Callable[[], bool]) -> None:
         """Tick until asked to stop.  A lost interface is the port's to count and to reopen."""
@@ -60,7 +62,7 @@ class Loop:
     def _drain(self, frames: Sequence[Frame], tick: Tick) -> Measurement:
         for frame in frames:
             self.node.feed(frame.frame_id, frame.data, frame.stamp_ns)
-        return self.node.measurement(tick.now_ns)
+        return self.node.measurement(tick.now_ns, self.port.condition())
 
     def _decide(self, measurement: Measurement) -> Command:
         try:
@@ -81,6 +83,8 @@ class Loop:
             self.overruns += 1
         elif not made.failed:
             self.healthy(made.stamps.sent_ns)
+        self.pipeline.sent(made.overrun)
+        self.transitions.note(made.command, made.stamps.sent_ns)
         trace = self.pipeline.trace
         if trace is not None:
             self.write(record(made, self._insight(trace)))

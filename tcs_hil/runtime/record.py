@@ -63,6 +63,8 @@ FIELDS = {
     "state": "B",
     "fault_code": "B",
     "controller": "B",
+    "bus_condition": "B",  # worst that the bus itself had shown
+    "suspects": "B",  # bits of Suspect: inputs that could not be true
     "overrun": "?",  # sent after the deadline
     "failed": "?",  # the pipeline raised
 }
@@ -152,6 +154,8 @@ def record(made: Pass, insight: Insight) -> Record:
         command.state,
         command.fault_code,
         command.controller,
+        m.bus,
+        insight.trace.suspects,
         made.overrun,
         made.failed,
     )

@@ -36,6 +36,7 @@ class RunInfo(msgspec.Struct, frozen=True, kw_only=True):
     started_monotonic_ns: int
     started_realtime_ns: int
     controller: str
+    backend: str = "unknown"  # recordings from before there were two do not say
     bus: str
     machine: str
 

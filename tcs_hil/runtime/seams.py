@@ -8,7 +8,7 @@ from typing import Protocol
 from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.port import Frame, PortCounters
 from tcs_hil.pipeline import Trace
-from tcs_hil.signals import Command, Measurement
+from tcs_hil.signals import BusCondition, Command, Measurement
 
 
 class Port(Protocol):
@@ -29,6 +29,10 @@ class Port(Protocol):
 
     def wait(self, timeout_s: float) -> bool:
         """Sleep until a frame is waiting; False when none came in time."""
+        ...
+
+    def condition(self) -> BusCondition:
+        """Return the worst that the bus itself has shown since the last call."""
         ...
 
 
@@ -62,8 +66,8 @@ class Node(Bench, Protocol):
         """Stamp of the newest good wheel-speed frame, None before the first."""
         ...
 
-    def measurement(self, now_ns: int) -> Measurement:
-        """Return the newest value of every input, aged to ``now_ns``."""
+    def measurement(self, now_ns: int, bus: BusCondition) -> Measurement:
+        """Return the newest value of every input, aged to ``now_ns``, and the bus's condition."""
         ...
 
     def frames(
@@ -83,6 +87,10 @@ class Pipeline(Protocol):
 
     def step(self, measurement: Measurement) -> Command:
         """Decide one tick."""
+        ...
+
+    def sent(self, overran: bool) -> None:
+        """Hear, after the tick, whether its limits went out after the deadline."""
         ...
 
     def abandon(self, measurement: Measurement) -> Command:

@@ -9,9 +9,8 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
-from tcs_hil.canbus.database import Database, load_database
+from tcs_hil.canbus.bus import choose_interface
 from tcs_hil.canbus.port import CanPort, open_port
-from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.runtime import recording
 from tcs_hil.runtime.clock import Clock, MonotonicClock
 from tcs_hil.runtime.frame_trigger import FrameTrigger
@@ -24,8 +23,10 @@ from tcs_hil.runtime.recording import RunInfo
 from tcs_hil.runtime.stop import StopRequest
 from tcs_hil.runtime.summary import Summary, summarise
 from tcs_hil.runtime.trigger import TimerTrigger, Trigger
+from tcs_hil.service.bus_end import BusEnd, bus_end
+from tcs_hil.service.claim import ChannelClaim
 from tcs_hil.service.settings import ServiceConfig
-from tcs_hil.service.wiring import build_laws, build_pipeline
+from tcs_hil.service.wiring import backend_of, build_laws, build_pipeline
 
 NS_PER_US = 1_000
 NS_PER_S = 1_000_000_000
@@ -35,22 +36,24 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
     """Run the service until SIGTERM or SIGINT and sum the run up.
 
     Raises:
-        TcsError: DBC, model, interface or recording cannot be used.
+        TcsError: DBC, model, interface or recording cannot be used, or another
+            service has the channel.
     """
     clock = MonotonicClock(config.tick.spin_us * NS_PER_US)
-    database = load_database(None if config.bus.database is None else Path(config.bus.database))
+    end = bus_end(config)
     laws = build_laws(config, clock)
     with ExitStack() as cleanup:
         stop = cleanup.enter_context(StopRequest())
-        port, description = open_port(config.bus.interface, config.bus.channel, config.bus.bitrate)
+        interface, description = choose_interface(config.bus.interface, config.bus.channel)
+        cleanup.enter_context(ChannelClaim(interface, config.bus.channel))
+        port, _ = open_port(interface, config.bus.channel, config.bus.bitrate)
         cleanup.callback(port.close)
         path = _recording_path(config, cleanup)
         recorder = cleanup.enter_context(_recorder(config, path, description))
-        node = TcsNode(database)
         loop = Loop(
-            trigger=_trigger(config, clock, port, node, database),
+            trigger=_trigger(config, clock, port, end),
             port=port,
-            node=node,
+            node=end.node,
             pipeline=build_pipeline(config, laws),
             laws=laws,
             clock=clock,
@@ -58,7 +61,10 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
             healthy=Watchdog().feed,
         )
         announce(f"bus: {description}")
-        announce(f"controller: {config.controller}, slip reference {config.control.slip_reference}")
+        announce(
+            f"controller: {config.controller} ({backend_of(config)}), "
+            f"slip reference {config.control.slip_reference}"
+        )
         if config.tick.trigger != "lockstep":
             for grant in prepare(config.tick.cpu, config.tick.priority):
                 announce(f"{'with' if grant.got else 'without'} {grant.what} ({grant.why})")
@@ -68,17 +74,13 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
         return summarise(recording.read(path))
 
 
-def _trigger(
-    config: ServiceConfig, clock: Clock, port: CanPort, node: TcsNode, database: Database
-) -> Trigger:
+def _trigger(config: ServiceConfig, clock: Clock, port: CanPort, end: BusEnd) -> Trigger:
     period_ns = _period_ns(config)
     if config.tick.trigger == "lockstep":
-        tick_id = database.messages["BenchTick"].frame_id
-        return LockstepTrigger(clock, port, node, tick_id, period_ns)
+        return LockstepTrigger(clock, port, end.node, end.bench_tick_id, period_ns)
     if config.tick.trigger == "frame":
         # The last wheel speeds of a cycle: once they are there, all of it is.
-        frame_id = database.messages["WheelSpeedsRear"].frame_id
-        return FrameTrigger(clock, port, frame_id, period_ns)
+        return FrameTrigger(clock, port, end.last_wheel_id, period_ns)
     return TimerTrigger(clock, port, period_ns, config.tick.phase_us * NS_PER_US)
 
 
@@ -88,6 +90,7 @@ def _recorder(config: ServiceConfig, path: Path, bus: str) -> FlightRecorder:
         started_monotonic_ns=time.monotonic_ns(),
         started_realtime_ns=time.time_ns(),
         controller=config.controller,
+        backend=backend_of(config),
         bus=bus,
         machine=f"{platform.node()} {platform.release()} {platform.machine()}",
     )

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from tcs_hil.canbus.mapping.settings import SignalMap
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.gate import GateSettings
 from tcs_hil.model.vehicle import Vehicle
@@ -23,7 +24,7 @@ class BusSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     interface: str = "auto"
     channel: str = "vcan0"
-    bitrate: Annotated[int, Meta(gt=0)] | None = None
+    bitrate: Annotated[int, Meta(gt=0, le=1_000_000)] | None = None
     database: str | None = None
 
 
@@ -40,7 +41,7 @@ class TickSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     phase_us: Annotated[int, Meta(ge=0, lt=20_000)] = 0
     spin_us: Annotated[int, Meta(ge=0, le=1_000)] = 0
     priority: Annotated[int, Meta(ge=1, le=99)] = FIFO_PRIORITY
-    cpu: Annotated[int, Meta(ge=0)] | None = None
+    cpu: Annotated[int, Meta(ge=0, le=4095)] | None = None
 
 
 class RecorderSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -51,7 +52,10 @@ class RecorderSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
 
 
 class ServiceConfig(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Everything ``tcs-hil run`` can be told."""
+    """Everything ``tcs-hil run`` can be told.
+
+    With a ``map`` the database is another car's DBC.
+    """
 
     controller: ControllerName = "kmpc"
     model: str | None = None
@@ -62,6 +66,7 @@ class ServiceConfig(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     vehicle: Vehicle = Vehicle()
     supervisor: SupervisorSettings = SupervisorSettings()
     gate: GateSettings = GateSettings()
+    map: SignalMap | None = None
 
     @property
     def kind(self) -> ControllerKind:

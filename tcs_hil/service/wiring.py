@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tcs_hil.control.backend import Backend, chosen_backend
 from tcs_hil.control.factory import make_controller
+from tcs_hil.control.fallback import FallbackController
+from tcs_hil.control.pi import PiController
+from tcs_hil.control.protocol import Controller
 from tcs_hil.estimator import Estimates, Estimator
 from tcs_hil.estimator.fused import FusedEstimator
 from tcs_hil.gate import Gate
 from tcs_hil.model.bank import KoopmanBank, default_bank_path
 from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
 from tcs_hil.pipeline import Law, Pipeline
+from tcs_hil.plausibility import Plausibility
 from tcs_hil.runtime.clock import Clock
 from tcs_hil.runtime.stopwatch import TimedController
 from tcs_hil.service.settings import ServiceConfig
@@ -27,13 +32,27 @@ def build_laws(config: ServiceConfig, clock: Clock) -> Laws:
         ModelError: the Koopman predictor cannot be used.
     """
     predictor = _predictor(config) if config.kind is ControllerKind.KMPC else None
-    left, right = (
-        TimedController(
-            make_controller(config.kind, config.control, config.vehicle, predictor), clock
-        )
-        for _ in range(2)
-    )
+    left, right = (TimedController(_with_stand_in(config, predictor), clock) for _ in range(2))
     return left, right
+
+
+def _with_stand_in(
+    config: ServiceConfig, predictor: KoopmanPredictor | KoopmanBank | None
+) -> Controller:
+    """The configured law; one whose solver may fail gets a PI behind it."""
+    law = make_controller(config.kind, config.control, config.vehicle, predictor)
+    if config.kind in (ControllerKind.OFF, ControllerKind.PI):
+        return law
+    return FallbackController(law, PiController(config.control))
+
+
+def backend_of(config: ServiceConfig) -> Backend:
+    """What runs the laws: the native step, or Python.
+
+    Raises:
+        ConfigError: a native step is asked for that does not exist.
+    """
+    return chosen_backend(config.kind, config.control)
 
 
 def _predictor(config: ServiceConfig) -> KoopmanPredictor | KoopmanBank:
@@ -48,6 +67,7 @@ def build_pipeline(config: ServiceConfig, laws: Laws) -> Pipeline:
     """The code between measurement and command around the two laws."""
     period_s = config.control.period_s
     return Pipeline(
+        Plausibility(config.vehicle, period_s),
         _estimator(config),
         Supervisor(config.supervisor),
         Law(config.kind, config.control.slip_reference, laws),

@@ -36,7 +36,7 @@ def report(*arguments: object) -> Result:
 
 def test_the_table_names_the_run_and_what_was_lost(recording: Path) -> None:
     output = report(recording).output
-    assert output.startswith("nmpc on virtual:test, a test\n")
+    assert output.startswith("nmpc (python) on virtual:test, a test\n")
     assert "lost frames 4, E2E errors 5" in " ".join(output.split())
 
 

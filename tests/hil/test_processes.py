@@ -17,6 +17,7 @@ def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
 
     def write(body: str) -> str:
         (tmp_path / "child_program.py").write_text(textwrap.dedent(body))
+        monkeypatch.syspath_prepend(tmp_path)
         monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), str(Path.cwd())]))
         return "child_program"
 

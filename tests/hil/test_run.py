@@ -1,16 +1,22 @@
 """Whole runs: recorder, service and emulator as processes on the embedded bus."""
 
 import uuid
+from dataclasses import replace
 from pathlib import Path
 
 import can
 import numpy as np
 import pytest
+from msgspec import structs
 
+from plant_emulator.scenario import load_scenario
+from tcs_hil.config import read_toml
+from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.metrics import slip_metrics
 from tcs_hil.hil.processes import ProcessError
 from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.service.settings import BusSettings, ControllerName, ServiceConfig
 from tcs_hil.signals import TcsState
 
 SHORT = """
@@ -18,6 +24,7 @@ description = "the paper's launch, cut short"
 duration_s = 0.5
 start_speed_kmph = 2.0
 road = [{ mu = 0.3 }]
+vehicle = { variant = "quarter-car" }
 
 [driver]
 request = [[0.05, 0.0], [0.25, 250.0]]
@@ -33,17 +40,13 @@ def plan(tmp_path: Path):
     scenario = tmp_path / "short.toml"
     scenario.write_text(SHORT)
 
-    def make(controller: str, mode: Mode, name: str = "run") -> RunPlan:
-        return RunPlan(
-            scenario=str(scenario),
-            vehicle="quarter-car",
+    def make(controller: ControllerName, mode: Mode, name: str = "run") -> RunPlan:
+        config = ServiceConfig(
             controller=controller,
-            mode=mode,
-            folder=tmp_path / name,
-            interface="embedded",
-            channel=f"vcan-{uuid.uuid4().hex[:8]}",
-            preset="paper",
+            bus=BusSettings(interface="embedded", channel=f"vcan-{uuid.uuid4().hex[:8]}"),
+            control=ControlSettings(preset="paper"),
         )
+        return RunPlan(load_scenario(scenario), config, mode, tmp_path / name)
 
     return make
 
@@ -72,7 +75,7 @@ def test_the_controller_holds_what_no_control_loses(plan) -> None:
 
 def test_in_real_time_every_tick_is_on_the_grid_or_counted_as_skipped(plan) -> None:
     # How many are skipped is the machine's affair; none may vanish.
-    ticks = execute(plan("pi", "realtime")).read_flight()
+    ticks = execute(plan("pi", "real-time")).read_flight()
     offsets_ns = ticks["scheduled_ns"] - ticks["scheduled_ns"][0]
     assert not (offsets_ns % PERIOD_NS).any()
     np.testing.assert_array_equal(
@@ -96,10 +99,28 @@ def test_the_flight_recording_tells_the_states_in_order(plan) -> None:
     assert list(changes[:3]) == [TcsState.INIT, TcsState.STANDBY, TcsState.ACTIVE]
 
 
-def test_a_scenario_that_does_not_exist_ends_the_run_with_its_name(plan, tmp_path: Path) -> None:
-    missing = RunPlan("no-such-road", "quarter-car", "off", "lockstep", tmp_path / "x", "embedded")
-    with pytest.raises(ProcessError, match="no-such-road"):
-        execute(missing)
+def test_a_program_that_fails_ends_the_run_with_its_last_words(plan) -> None:
+    unknown = plan("off", "lockstep")
+    bus = BusSettings(interface="no-such-interface", channel="x")
+    unknown = replace(unknown, config=structs.replace(unknown.config, bus=bus))
+    with pytest.raises(ProcessError, match="no-such-interface"):
+        execute(unknown)
+
+
+def test_in_one_process_a_run_is_the_same_as_in_lockstep_on_a_bus(plan) -> None:
+    apart, together = execute(plan("nmpc", "lockstep", "a")), execute(plan("nmpc", "in-process"))
+    np.testing.assert_array_equal(apart.read_truth(), together.read_truth())
+    for name in DECISIONS:
+        np.testing.assert_array_equal(apart.read_flight()[name], together.read_flight()[name])
+    assert sorted(frames(apart.bus)) == sorted(frames(together.bus))
+
+
+def test_what_was_run_can_be_read_back(plan) -> None:
+    planned = plan("pi", "in-process")
+    files = execute(planned)
+    assert load_scenario(files.scenario) == planned.scenario
+    config = read_toml(files.config, ServiceConfig)
+    assert (config.controller, config.control) == ("pi", planned.config.control)
 
 
 def frames(path: Path) -> list[tuple[int, bytes]]:

@@ -5,18 +5,28 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.port import Frame, PortCounters
 from tcs_hil.control.protocol import Proposal, WheelState
 from tcs_hil.estimator import Estimate
+from tcs_hil.fault_codes import FaultCode
 from tcs_hil.gate import Permission
 from tcs_hil.pipeline import Trace
 from tcs_hil.runtime.record import Insight, Pass, Record, Stamps, record
 from tcs_hil.runtime.recording import RunInfo
 from tcs_hil.runtime.trigger import Tick
-from tcs_hil.signals import Command, ControllerKind, Measurement, TcsState, TorqueLimits
-from tcs_hil.supervisor import FaultCode, Verdict
+from tcs_hil.signals import (
+    BusCondition,
+    Command,
+    ControllerKind,
+    Measurement,
+    Suspect,
+    TcsState,
+    TorqueLimits,
+)
+from tcs_hil.supervisor import Verdict
 
 PERIOD_NS = 2_000_000
 MEASUREMENT = Measurement(
@@ -30,6 +40,7 @@ MEASUREMENT = Measurement(
     rear_speed_age_s=0.002,
     motor_age_s=0.003,
     driver_age_s=math.inf,
+    bus=BusCondition.SEND_FAILED,
 )
 COMMAND = Command(
     limits=TorqueLimits(61.0, math.inf),
@@ -45,6 +56,7 @@ TRACE = Trace(
     Estimate(7.0, (WHEEL, WHEEL)),
     (Proposal(71.0, iterations=3), Proposal(72.0, iterations=4)),
     Verdict(TcsState.ACTIVE, FaultCode.NONE, Permission.FOLLOW),
+    Suspect.WHEEL_RL | Suspect.DRIVER,
 )
 
 
@@ -70,6 +82,7 @@ class FakePort:
     def __init__(self, clock: FakeClock, script: Iterable[Frame] = ()) -> None:
         self.counters = PortCounters(rx=101, tx=102, error_frames=1, rx_errors=2, tx_errors=3)
         self.sent: list[tuple[int, bytes]] = []
+        self.bus = MEASUREMENT.bus
         self._clock = clock
         self._script = deque(script)
 
@@ -84,6 +97,9 @@ class FakePort:
         arrives = bool(self._script) and self._script[0].stamp_ns <= give_up_ns
         self._clock.sleep_until(self._script[0].stamp_ns if arrives else give_up_ns)
         return arrives
+
+    def condition(self) -> BusCondition:
+        return self.bus
 
     def send(self, frame_id: int, data: bytes) -> bool:
         self.sent.append((frame_id, data))
@@ -105,8 +121,8 @@ class FakeNode:
         self.fed.append(Frame(frame_id, data, stamp_ns))
         return True
 
-    def measurement(self, _now_ns: int) -> Measurement:
-        return MEASUREMENT
+    def measurement(self, _now_ns: int, bus: BusCondition) -> Measurement:
+        return replace(MEASUREMENT, bus=bus)
 
     def frames(
         self, _command: Command, _now_ns: int, tick_overruns: int
@@ -147,6 +163,7 @@ RUN = RunInfo(
     started_monotonic_ns=1,
     started_realtime_ns=2,
     controller="nmpc",
+    backend="python",
     bus="virtual:test",
     machine="a test",
 )

@@ -26,7 +26,7 @@ from tcs_hil.runtime.loop import Loop
 from tcs_hil.runtime.record import FIELDS, Record
 from tcs_hil.runtime.stopwatch import TimedController
 from tcs_hil.runtime.trigger import Tick
-from tcs_hil.signals import Command, Measurement, TcsState
+from tcs_hil.signals import BusCondition, Command, Measurement, TcsState
 
 ABANDONED = replace(COMMAND, state=TcsState.FAULT)
 
@@ -78,6 +78,7 @@ class FakePipeline:
     def __init__(self, laws: tuple[TimedController, TimedController], breaks_in: set[int]) -> None:
         self.trace: Trace | None = TRACE
         self.abandoned: list[Measurement] = []
+        self.overran: list[bool] = []
         self._laws = laws
         self._breaks_in = breaks_in
         self._steps = -1
@@ -89,6 +90,9 @@ class FakePipeline:
         for law in self._laws:
             law.step(WHEEL, 100.0)
         return COMMAND
+
+    def sent(self, overran: bool) -> None:
+        self.overran.append(overran)
 
     def abandon(self, measurement: Measurement) -> Command:
         self.abandoned.append(measurement)
@@ -147,6 +151,14 @@ def test_a_tick_drains_decides_and_sends() -> None:
     assert rig.recorded("limit_fl_nm") == [COMMAND.limits.left_nm]
 
 
+def test_what_the_bus_has_shown_is_put_before_the_pipeline_and_on_record() -> None:
+    rig = Rig(breaks_in=[0])
+    rig.port.bus = BusCondition.BUS_OFF
+    rig.run()
+    assert rig.pipeline.abandoned[0].bus is BusCondition.BUS_OFF
+    assert rig.recorded("bus_condition") == [BusCondition.BUS_OFF]
+
+
 def test_the_stages_are_stamped_in_order() -> None:
     rig = Rig()
     rig.run()
@@ -174,6 +186,7 @@ def test_a_tick_in_time_is_healthy() -> None:
     rig.run()
     assert len(rig.fed_watchdog_at) == 3
     assert rig.recorded("overrun") == [False] * 3
+    assert rig.pipeline.overran == [False] * 3
 
 
 def test_an_overrun_is_counted_published_with_the_next_tick_and_not_healthy() -> None:
@@ -182,6 +195,7 @@ def test_an_overrun_is_counted_published_with_the_next_tick_and_not_healthy() ->
     assert rig.loop.overruns == 2
     assert rig.node.overruns == [0, 1]
     assert rig.recorded("overrun") == [True, True]
+    assert rig.pipeline.overran == [True, True]
     assert rig.fed_watchdog_at == []
 
 
@@ -207,8 +221,20 @@ def test_failures_are_logged_once_with_their_cause(caplog: pytest.LogCaptureFixt
     with caplog.at_level(logging.ERROR):
         rig.run()
     assert rig.loop.failures == 5
-    assert len(caplog.records) == 1
-    assert "a bug" in caplog.text
+    (failure,) = [r for r in caplog.records if r.name == "tcs_hil.runtime.loop"]
+    assert failure.exc_text is not None
+    assert "a bug" in failure.exc_text
+
+
+def test_a_change_of_state_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+    rig = Rig(3, breaks_in=[1])
+    with caplog.at_level(logging.WARNING, "tcs_hil.runtime.transitions"):
+        rig.run()
+    lines = [r.message for r in caplog.records if r.name == "tcs_hil.runtime.transitions"]
+    assert [line.partition(" code")[0] for line in lines] == [
+        "state=FAULT before=STANDBY",
+        "state=STANDBY before=FAULT",
+    ]
 
 
 def test_a_trigger_without_a_tick_sends_nothing() -> None:

@@ -19,7 +19,7 @@ from tcs_hil.control.protocol import SolveStatus
 from tcs_hil.runtime.record import FIELDS, NO_LATENCY, PACKER, record
 from tcs_hil.runtime.recorder import FlightRecorder
 from tcs_hil.runtime.recording import PREAMBLE, RecordingError, read, read_info, read_on
-from tcs_hil.signals import ControllerKind, TcsState
+from tcs_hil.signals import BusCondition, ControllerKind, Suspect, TcsState
 
 
 @pytest.fixture
@@ -87,6 +87,8 @@ def test_every_field_comes_back_under_its_own_name(path: Path) -> None:
         "state": TcsState.ACTIVE,
         "fault_code": 0,
         "controller": ControllerKind.NMPC,
+        "bus_condition": BusCondition.SEND_FAILED,
+        "suspects": Suspect.WHEEL_RL | Suspect.DRIVER,
         "overrun": False,
         "failed": False,
     }

@@ -19,6 +19,7 @@ from tcs_hil.runtime.recorder import FlightRecorder
 from tcs_hil.runtime.trigger import TimerTrigger
 from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.service.wiring import build_laws, build_pipeline
+from tcs_hil.signals import BusCondition
 
 FREE_LIST = 2200  # CPython keeps up to 2000 discarded tuples of each length for reuse
 SPINNING = VehicleSignals(
@@ -48,6 +49,9 @@ class VehiclePort:
 
     def wait(self, timeout_s: float) -> bool:
         return True
+
+    def condition(self) -> BusCondition:
+        return BusCondition.OK
 
 
 @pytest.fixture

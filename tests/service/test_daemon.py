@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -22,6 +23,7 @@ from tcs_hil.signals import TcsState
 LIMIT_ID = 0x090
 NO_LIMIT_BITS = 0x3FFF
 HALF_A_PERIOD_NS = 1_000_000
+PATIENCE_S = 60.0  # for a daemon to start on a crowded machine
 
 
 @pytest.fixture
@@ -47,7 +49,7 @@ def limits(bus: can.BusABC, count: int) -> list[can.Message]:
     """The next ``count`` torque-limit frames; the daemon sends one every 2 ms."""
     found: list[can.Message] = []
     while len(found) < count:
-        message = bus.recv(timeout=5.0)
+        message = bus.recv(timeout=PATIENCE_S)
         assert message is not None, "the daemon is silent"
         if message.arbitration_id == LIMIT_ID:
             found.append(message)
@@ -86,7 +88,7 @@ def test_a_signal_ends_it_cleanly_with_a_summary(
     channel: str, tmp_path: Path, stranger: can.BusABC, number: signal.Signals
 ) -> None:
     flight = tmp_path / "flight.tcsrec"
-    child = subprocess.Popen(
+    with subprocess.Popen(
         [
             *(sys.executable, "-m", "tcs_hil", "run", "--interface", "embedded"),
             *("--channel", channel, "--controller", "off"),
@@ -95,10 +97,13 @@ def test_a_signal_ends_it_cleanly_with_a_summary(
         stdout=subprocess.PIPE,
         text=True,
         env=os.environ | {"PYTHONUNBUFFERED": "1"},
-    )
-    limits(stranger, 10)
-    child.send_signal(number)
-    output, _ = child.communicate(timeout=20.0)
+    ) as child:
+        try:
+            limits(stranger, 10)
+            child.send_signal(number)
+            output, _ = child.communicate(timeout=PATIENCE_S)
+        finally:
+            child.kill()  # a daemon that outlives a failed test disturbs all that come after it
     assert child.returncode == 0
     summary = json.loads(output.splitlines()[-1])
     assert summary["ticks"] >= 10
@@ -114,7 +119,7 @@ def test_the_configuration_file_is_obeyed_and_options_win(
     log = tmp_path / "service.log"
     with program("tcs_hil", "run", "--config", str(config), "--controller", "pi", log=log):
         limits(stranger, 1)
-    assert "controller: pi" in log.read_text()
+    assert "controller: pi (python)" in log.read_text()
 
 
 def test_a_service_that_ticks_with_a_frame_gives_a_missing_one_half_a_period(
@@ -142,6 +147,26 @@ def test_its_recording_is_reported_while_it_runs(
             counts.append(json.loads(output)["ticks"])
         limits(stranger, 1)
     assert 20 <= counts[0] < counts[1] < len(read(flight))
+
+
+def test_a_second_daemon_on_the_channel_is_refused_and_the_first_named(
+    channel: str, tmp_path: Path, stranger: can.BusABC
+) -> None:
+    rival = [sys.executable, "-m", "tcs_hil", "run", "--interface", "embedded"]
+    with daemon(channel, tmp_path, "--controller", "off"):
+        refused = subprocess.run(
+            [*rival, "--channel", channel, "--controller", "off"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert refused.returncode == 2
+        assert re.fullmatch(
+            f"tcs-hil: error: embedded {channel} already has a traction control service "
+            r"\(process \d+\)\n",
+            refused.stderr,
+        )
+        limits(stranger, 10)
 
 
 @pytest.mark.parametrize("option", ["--priority=0", "--spin-us=5000", "--cpu=-1"])

@@ -7,16 +7,28 @@ from pathlib import Path
 import can
 import pytest
 
+from plant_emulator.scenario import load_scenario
 from tcs_hil.canbus.bus import open_bus
+from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.metrics import slip_metrics
 from tcs_hil.hil.processes import Program, program
-from tcs_hil.hil.run import RunPlan, execute
+from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.recording import read
+from tcs_hil.service.settings import BusSettings, ControllerName, ServiceConfig
 
 from .conftest import CHANNEL, Candump, Interface
 
 LIMIT_ID = 0x090
+
+
+def paper_plan(controller: ControllerName, mode: Mode, folder: Path) -> RunPlan:
+    config = ServiceConfig(
+        controller=controller,
+        bus=BusSettings(channel=CHANNEL),
+        control=ControlSettings(preset="paper"),
+    )
+    return RunPlan(load_scenario("manoeuvre-1"), config, mode, folder)
 
 
 @contextmanager
@@ -34,9 +46,7 @@ def next_limit(bus: can.BusABC) -> can.Message:
 
 
 def test_the_papers_manoeuvre_runs_in_lockstep_on_a_real_bus(tmp_path: Path) -> None:
-    files = execute(
-        RunPlan("manoeuvre-1", "quarter-car", "kmpc", "lockstep", tmp_path / "run", preset="paper")
-    )
+    files = execute(paper_plan("kmpc", "lockstep", tmp_path / "run"))
     assert "bus: socketcan vcan0" in (tmp_path / "run" / "service.log").read_text()
     metrics = slip_metrics(files.read_truth(), 0.1, Vehicle())
     assert metrics.rmse_ratio <= 0.006
@@ -46,13 +56,9 @@ def test_the_papers_manoeuvre_runs_in_lockstep_on_a_real_bus(tmp_path: Path) -> 
 @pytest.mark.simulated_time
 @pytest.mark.parametrize(("controller", "peak"), [("pi", 0.11), ("kmpc", 0.15), ("nmpc", 0.12)])
 def test_the_papers_manoeuvre_runs_in_real_time_on_a_real_bus(
-    tmp_path: Path, controller: str, peak: float
+    tmp_path: Path, controller: ControllerName, peak: float
 ) -> None:
-    files = execute(
-        RunPlan(
-            "manoeuvre-1", "quarter-car", controller, "realtime", tmp_path / "run", preset="paper"
-        )
-    )
+    files = execute(paper_plan(controller, "real-time", tmp_path / "run"))
     assert slip_metrics(files.read_truth(), 0.1, Vehicle()).peak_ratio < peak
     ticks = read(files.flight)
     assert not ticks["skipped"].any()

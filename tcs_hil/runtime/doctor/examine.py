@@ -24,6 +24,7 @@ CHECKS = (
     limits.receive_buffer,
     software.bus_software,
     software.solvers,
+    software.native_step,
     bus.socketcan,
 )
 

@@ -10,6 +10,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Protocol
 
+from tcs_hil import native
+
 PATIENCE_S = 30.0
 
 
@@ -34,6 +36,10 @@ class Machine(Protocol):
 
     def version(self, distribution: str) -> str | None:
         """Version of an installed Python distribution."""
+        ...
+
+    def has_native_step(self) -> bool:
+        """Whether the package was installed with its compiled extension."""
         ...
 
     def speaks_can(self) -> bool:
@@ -80,6 +86,10 @@ class ThisMachine:
             return metadata.version(distribution)
         except metadata.PackageNotFoundError:
             return None
+
+    def has_native_step(self) -> bool:
+        """Ask the package."""
+        return native.is_built()
 
     def speaks_can(self) -> bool:
         """Try to make a CAN socket."""

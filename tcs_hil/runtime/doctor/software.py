@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 
-from tcs_hil.runtime.doctor.finding import Finding, fail, ok
+from tcs_hil.runtime.doctor.finding import Finding, fail, ok, warn
 from tcs_hil.runtime.doctor.machine import Machine
 
 BUS = ("python-can", "cantools", "autosar-e2e")
@@ -19,6 +19,16 @@ def bus_software(machine: Machine) -> Finding:
 def solvers(machine: Machine) -> Finding:
     """What the control laws are solved with."""
     return _versions(machine, f"Python {platform.python_version()}, solvers", SOLVERS)
+
+
+def native_step(machine: Machine) -> Finding:
+    """Whether the laws' steps were compiled when this package was installed."""
+    what = "native step"
+    if machine.has_native_step():
+        return ok(what, "built")
+    return warn(
+        what, "not built: the laws run in Python", "apt-get install gcc python3-dev, install anew"
+    )
 
 
 def _versions(machine: Machine, what: str, names: tuple[str, ...]) -> Finding:

@@ -18,6 +18,7 @@ class FakeMachine:
     versions: Mapping[str, str] = field(default_factory=dict)
     can: bool = True
     resolution_s: float = 1e-9
+    native_step: bool = True
 
     def read(self, path: str) -> str | None:
         return self.files.get(path)
@@ -33,6 +34,9 @@ class FakeMachine:
 
     def version(self, distribution: str) -> str | None:
         return self.versions.get(distribution)
+
+    def has_native_step(self) -> bool:
+        return self.native_step
 
     def speaks_can(self) -> bool:
         return self.can

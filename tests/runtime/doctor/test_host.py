@@ -125,6 +125,13 @@ def test_the_receive_buffer_may_grow_to_what_the_bus_asks_for(
         assert finding.remedy == "sudo sysctl -w net.core.rmem_max=4194304"
 
 
+def test_without_a_native_step_the_doctor_says_how_to_get_one() -> None:
+    assert software.native_step(FakeMachine()).verdict is OK
+    finding = software.native_step(FakeMachine(native_step=False))
+    assert finding.verdict is WARN
+    assert "gcc" in finding.remedy
+
+
 def test_a_missing_distribution_is_a_hard_failure_with_its_name() -> None:
     present = dict.fromkeys((*software.BUS, *software.SOLVERS), "1.0")
     assert software.bus_software(FakeMachine(versions=present)).verdict is OK

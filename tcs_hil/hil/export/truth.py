@@ -1,0 +1,28 @@
+"""The plant's truth as a table: what no controller ever saw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tcs_hil.hil.export.names import unit_of, wheel_names
+from tcs_hil.hil.export.table import Channel, Instants, Table
+
+COMMENT = "What really happened in the plant; time_s is the scenario's own"
+
+
+def truth_table(rows: NDArray[np.void], time_ns: Instants) -> Table:
+    """Every field of the truth, (n,), a channel for each wheel."""
+    names = rows.dtype.names or ()
+    channels = tuple(channel for name in names for channel in _channels(name, rows[name]))
+    return Table("truth", COMMENT, time_ns, channels)
+
+
+def _channels(name: str, values: NDArray[Any]) -> Iterator[Channel]:
+    columns = [values] if values.ndim == 1 else list(values.T)
+    names = [name] if values.ndim == 1 else wheel_names(name, len(columns))
+    for each, column in zip(names, columns, strict=True):
+        yield Channel(each, np.ascontiguousarray(column), unit_of(each))

@@ -1,0 +1,1 @@
+"""Limits on a run: what can be measured, under which name, and whether it was kept."""

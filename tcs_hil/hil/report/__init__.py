@@ -1,0 +1,1 @@
+"""The report: one HTML page per suite, with everything inside it."""

@@ -1,0 +1,1 @@
+"""Suites: which cases there are, driving them side by side, and what came of them."""

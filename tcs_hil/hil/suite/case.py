@@ -1,0 +1,91 @@
+"""A case: one scenario against one service, and who judges it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from msgspec import structs
+
+from plant_emulator.expect import Expect
+from plant_emulator.scenario import Scenario
+from tcs_hil.control.settings import PresetName
+from tcs_hil.errors import ConfigError
+from tcs_hil.hil.judging.checks import prepare
+from tcs_hil.hil.judging.evidence import Evidence
+from tcs_hil.hil.judging.verdict import Finding, judge
+from tcs_hil.service.settings import ControllerName, ServiceConfig
+
+Judge = Callable[[Evidence], list[Finding]]
+
+
+ALWAYS = (
+    Expect(metric="limit above request", op="<=", value=0.0),
+    Expect(metric="lowest limit", op=">=", value=0.0),
+    Expect(metric="failed ticks", op="==", value=0.0),
+)
+"""What holds in every run, whoever wrote the scenario: the service only ever lowers torque."""
+
+
+def judge_expectations(evidence: Evidence) -> list[Finding]:
+    """Judge a run by its scenario's `[[expect]]` tables, and by what always holds."""
+    database = evidence.config.bus.database
+    expected = (*evidence.scenario.expect, *ALWAYS)
+    return judge([prepare(each, database) for each in expected], evidence)
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One run to be made; ``scenario_name`` and the law tell it from the others of its suite.
+
+    ``judge`` must be a function of a module: it is called in another process.
+    """
+
+    suite: str
+    scenario_name: str
+    scenario: Scenario
+    config: ServiceConfig
+    judge: Judge = judge_expectations
+
+    @property
+    def name(self) -> str:
+        """Unique in a run of the bench; also where in its folder the run is kept."""
+        preset = "" if self.config.control.preset == "default" else f"-{self.config.control.preset}"
+        return f"{self.scenario_name}/{self.config.controller}{preset}"
+
+
+def with_law(case: Case, controller: ControllerName | None, preset: PresetName | None) -> Case:
+    """The same case under another control law; None leaves it as it is."""
+    config = case.config
+    if controller is not None:
+        config = structs.replace(config, controller=controller)
+    if preset is not None:
+        config = structs.replace(config, control=structs.replace(config.control, preset=preset))
+    return replace(case, config=config)
+
+
+def check_cases(cases: Sequence[Case]) -> None:
+    """Refuse what could not be judged or told apart, before anything is driven.
+
+    Raises:
+        ConfigError: an expectation names what does not exist, or two cases have one
+            name; the scenario is named.
+    """
+    for case in cases:
+        for number, expect in enumerate(case.scenario.expect, 1):
+            try:
+                prepare(expect, case.config.bus.database)
+            except ConfigError as error:
+                raise ConfigError(f"{case.scenario_name}: expect {number}: {error}") from error
+    twice = _first_twice(case.name for case in cases)
+    if twice is not None:
+        raise ConfigError(f"two cases are called {twice}: name one of the scenarios differently")
+
+
+def _first_twice(names: Iterable[str]) -> str | None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            return name
+        seen.add(name)
+    return None

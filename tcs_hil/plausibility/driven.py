@@ -1,0 +1,89 @@
+"""A driven wheel and its motor: two sensors of one rotation, and the torque between them."""
+
+from __future__ import annotations
+
+import math
+
+from tcs_hil.plausibility.trace import Duration, SpeedTrace
+
+APART_RATIO, APART_MPS = 0.1, 0.8  # the shaft twists, and a ring tells late
+STEP_MPS = 0.5  # by which the two do not part in one tick
+FLUTTER_NM = 40.0  # which no motor changes by tick after tick
+MUTE_RATIO, MUTE_NM = 0.1, 50.0  # gives so little of so much it may give
+
+APART_S, HEALED_S, RECENT_S = 0.05, 0.1, 0.2
+FLUTTER_S, MUTE_S = 0.02, 0.1
+
+
+class DrivenWheel:
+    """Whether wheel and motor turn together, and if not, which of the two is wrong."""
+
+    def __init__(self, period_s: float) -> None:
+        self.wheel_suspected = False
+        self.motor_suspected = False
+        self._wheel = SpeedTrace(math.inf, period_s)
+        self._motor = SpeedTrace(math.inf, period_s)
+        self._gap_mps = math.nan
+        self._wheel_stepped = self._motor_stepped = False
+        self._forget = Duration(RECENT_S, period_s)
+        self._apart = Duration(APART_S, period_s)
+        self._together = Duration(HEALED_S, period_s)
+
+    def take(self, wheel_mps: float, motor_mps: float, rolling_mps: float) -> float:
+        """Hear both speeds, and that of the rolling wheels to decide between them.
+
+        Returns the rim's speed: by the motor, which is the better sensor, or by the wheel.
+        """
+        wheel, motor = self._wheel, self._motor
+        wheel.take(wheel_mps, motor_mps)
+        motor.take(motor_mps, wheel_mps)
+        gap_mps, far_mps = wheel_mps - motor_mps, APART_MPS + APART_RATIO * wheel_mps
+        self._notice_step(gap_mps)
+        if self.wheel_suspected or self.motor_suspected:
+            self._heal(abs(gap_mps) <= far_mps and not wheel.stuck and not motor.stuck)
+        elif self._apart.reached(abs(gap_mps) > far_mps) or wheel.stuck or motor.stuck:
+            self._accuse(wheel_mps, motor_mps, rolling_mps - far_mps)
+        return wheel_mps if self.motor_suspected or math.isnan(motor_mps) else motor_mps
+
+    def _notice_step(self, gap_mps: float) -> None:
+        """Remember for a while who moved when the two parted in one tick."""
+        if abs(gap_mps - self._gap_mps) > STEP_MPS:
+            self._wheel_stepped = self._wheel.change_mps > self._motor.change_mps
+            self._motor_stepped = not self._wheel_stepped
+        elif self._forget.reached(self._wheel_stepped or self._motor_stepped):
+            self._wheel_stepped = self._motor_stepped = False
+        self._gap_mps = gap_mps
+
+    def _accuse(self, wheel_mps: float, motor_mps: float, least_mps: float) -> None:
+        """The one that stands still, that stepped, or is slower than a driven wheel can be."""
+        evidence = (
+            (self._wheel.stuck, self._motor.stuck),
+            (self._wheel_stepped, self._motor_stepped),
+            (wheel_mps < least_mps, motor_mps < least_mps),
+        )
+        verdict = next((pair for pair in evidence if pair[0] != pair[1]), (True, True))
+        self.wheel_suspected, self.motor_suspected = verdict
+
+    def _heal(self, agree: bool) -> None:
+        if self._together.reached(agree):
+            self.wheel_suspected = self.motor_suspected = False
+
+
+class MotorTorque:
+    """Whether the torque a motor reports can be one."""
+
+    def __init__(self, period_s: float) -> None:
+        self.suspected = False
+        self._torque_nm = math.nan
+        self._flutter = Duration(FLUTTER_S, period_s)
+        self._mute = Duration(MUTE_S, period_s)
+        self._calm = Duration(HEALED_S, period_s)
+
+    def take(self, torque_nm: float, allowed_nm: float) -> None:
+        """Hear what the motor is said to give, and what it was allowed to."""
+        flutters = self._flutter.reached(abs(torque_nm - self._torque_nm) > FLUTTER_NM)
+        mute = self._mute.reached(allowed_nm > MUTE_NM and torque_nm < MUTE_RATIO * allowed_nm)
+        self._torque_nm = torque_nm
+        wrong = flutters or mute
+        healed = self._calm.reached(self.suspected and not wrong)
+        self.suspected = wrong or (self.suspected and not healed)

@@ -1,0 +1,71 @@
+"""How signals behave over time: for how long it has been so, what jumps, what stands still."""
+
+from __future__ import annotations
+
+import math
+
+EDGE_RATIO, EDGE_MPS = 0.06, 0.1  # edges of a toothed ring that are off their place
+RING_M = 0.2  # way in which every ring shows an edge
+NEAR_RATIO, NEAR_MPS = 0.05, 0.4  # of speeds that agree
+
+
+class Duration:
+    """For how long something has been so; a moment in which it was not counts double."""
+
+    def __init__(self, seconds: float, period_s: float) -> None:
+        self._needed = round(seconds / period_s)
+        self._ticks = 0
+
+    def reached(self, holds: bool) -> bool:
+        """Hear of one tick; whether it has been long enough."""
+        if holds:
+            self._ticks = min(self._ticks + 1, self._needed)
+        elif self._ticks:
+            self._ticks = max(self._ticks - 2, 0)
+        return self._ticks == self._needed
+
+
+class SpeedTrace:
+    """One speed as it comes, beside another that should go with it; NaN is none.
+
+    ``change_mps``: from the speed before.  ``jumped``: no wheel gets there from it.
+    ``stuck``: it stands still on a way on which the other has moved.
+    """
+
+    def __init__(self, rate_mps2: float, period_s: float) -> None:
+        self.change_mps = math.nan
+        self.jumped = False
+        self.stuck = False
+        self._step_mps = rate_mps2 * period_s
+        self._period_s = period_s
+        self._speed_mps = math.nan
+        self._other_mps = math.nan  # what the other was when this one last moved
+        self._stood_ticks = 0
+
+    def take(self, speed_mps: float, other_mps: float) -> None:
+        """Take the newest speed of both."""
+        self.change_mps = change_mps = abs(speed_mps - self._speed_mps)
+        # What is this small is none: most ticks end the question here.
+        self.jumped = change_mps > self._step_mps and self._jumps(change_mps, speed_mps)
+        if change_mps == 0.0:
+            self._stood_ticks += 1
+            way_m = self._stood_ticks * self._period_s * speed_mps
+            self.stuck = way_m > RING_M and far(other_mps, self._other_mps)
+            return
+        self.stuck = False
+        self._stood_ticks = 0
+        self._speed_mps, self._other_mps = speed_mps, other_mps
+
+    def _jumps(self, change_mps: float, speed_mps: float) -> bool:
+        edges_mps = EDGE_MPS + EDGE_RATIO * min(speed_mps, self._speed_mps)
+        return change_mps > self._step_mps * (self._stood_ticks + 2) + edges_mps
+
+
+def near(speed_mps: float, other_mps: float, more_mps: float = 0.0) -> bool:
+    """Whether two speeds agree; not where one is unknown."""
+    return abs(speed_mps - other_mps) <= NEAR_MPS + NEAR_RATIO * other_mps + more_mps
+
+
+def far(speed_mps: float, other_mps: float) -> bool:
+    """Whether two speeds contradict each other; not where one is unknown."""
+    return abs(speed_mps - other_mps) > NEAR_MPS + NEAR_RATIO * other_mps

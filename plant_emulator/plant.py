@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 import numpy as np
 
+from plant_emulator.car import Car
 from plant_emulator.driver import Pedal
 from plant_emulator.encoder import Encoder
 from plant_emulator.inverter import Demand, LimitKeeper
 from plant_emulator.motor_faults import MotorFaults
+from plant_emulator.own_car import own_car
 from plant_emulator.quarter_car import QuarterCarPlant
 from plant_emulator.road import road_table
 from plant_emulator.scenario import Scenario
@@ -20,18 +21,6 @@ from plant_emulator.truth import DISTANCE, LIMIT, REQUEST, ROW_SIZE, TIME, Row, 
 from plant_emulator.whole_car_plant import WholeCarPlant
 from tcs_hil.canbus.vehicle_node import VehicleSignals
 from tcs_hil.signals import TorqueLimits
-
-
-class Car(Protocol):
-    """What a variant of the car must do."""
-
-    def advance(self, demand: Demand, time_s: float, duration_s: float, /) -> None:
-        """Integrate from ``time_s`` over ``duration_s``, in which demands are straight lines."""
-        ...
-
-    def observe(self, demand: Demand, row: Row, /) -> None:
-        """Fill the car's part into a row of the truth."""
-        ...
 
 
 class Plant:
@@ -136,6 +125,8 @@ def _build(scenario: Scenario) -> tuple[Car, SensorSet, Encoder | None]:
     if scenario.vehicle.variant == "quarter-car":
         quarter = QuarterCarPlant(scenario.vehicle.quarter_car, road, speed_mps)
         return quarter, SensorSet(IDEAL, rng), None
+    if scenario.vehicle.variant == "own":
+        return own_car(scenario), SensorSet(scenario.sensors, rng), None
     whole = WholeCarPlant(scenario.vehicle.whole, road, speed_mps, scenario.sensors)
     sensors = SensorSet(scenario.sensors, rng, whole.encoder, whole.wheels)
     return whole, sensors, whole.encoder

@@ -17,6 +17,7 @@ from plant_emulator.driveline import Driveline
 from plant_emulator.driver import Driver
 from plant_emulator.expect import ControllerTable, Expect
 from plant_emulator.faults import Fault
+from plant_emulator.fmu_settings import FmuTable
 from plant_emulator.quarter_car import QuarterCar
 from plant_emulator.road import Patch
 from plant_emulator.road_file import read_road
@@ -32,17 +33,20 @@ MOST_DOUBLINGS = 4
 
 LIBRARY = Path(__file__).parent / "scenarios"
 
-Variant = Literal["quarter-car", "vehicle"]
+Variant = Literal["quarter-car", "vehicle", "own"]
 
 
 class VehicleTable(Table, frozen=True):
     """Which car, and where it differs from the default one.
 
     ``tyre_file`` is a tyre property file (.tir), relative to the scenario's; it
-    takes the place of ``[vehicle.tyre]``.
+    takes the place of ``[vehicle.tyre]``.  ``source`` is the file of the variant
+    ``own``, relative to the scenario's: ``car.fmu`` or ``car.py:Class``.
     """
 
     variant: Variant = "vehicle"
+    source: str | None = None
+    fmu: FmuTable = FmuTable()
     tyre_file: str | None = None
     quarter_car: QuarterCar = QuarterCar()
     body: Body = Body()
@@ -125,6 +129,10 @@ def load_scenario(name_or_path: str | Path) -> Scenario:
     if scenario.vehicle.tyre_file is not None:
         tyre = read_tir(path.parent / scenario.vehicle.tyre_file)
         vehicle = msgspec.structs.replace(scenario.vehicle, tyre=tyre)
+        scenario = msgspec.structs.replace(scenario, vehicle=vehicle)
+    if scenario.vehicle.source is not None:
+        source = str((path.parent / scenario.vehicle.source).absolute())
+        vehicle = msgspec.structs.replace(scenario.vehicle, source=source)
         scenario = msgspec.structs.replace(scenario, vehicle=vehicle)
     if scenario.road_file is not None:
         road = read_road(path.parent / scenario.road_file)

@@ -1,0 +1,85 @@
+import json
+import subprocess
+import sys
+
+import pyarrow.parquet as pq
+import pytest
+
+STUDY = """
+scenario = "short.toml"
+points = 6
+service = { controller = "off" }
+[[vary]]
+key = "vehicle.body.mass_kg"
+low = 1120.0
+high = 1680.0
+[[vary]]
+key = "road.0.mu"
+low = 0.1
+high = 0.6
+"""
+SCENARIO = """
+description = "short"
+duration_s = 0.2
+start_speed_kmph = 30.0
+[driver]
+request = [[0.0, 200.0]]
+"""
+
+
+def campaign(folder, *arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "tcs_hil", "campaign", "study.toml", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=folder,
+    )
+
+
+def _known(rows):
+    """Not a number equals nothing, itself included; JSON has null for it."""
+    return [{k: v for k, v in row.items() if str(v) not in ("None", "nan")} for row in rows]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "study.toml").write_text(STUDY)
+    (tmp_path / "short.toml").write_text(SCENARIO + "[[road]]\nmu = 0.3\n")
+    return tmp_path
+
+
+def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(folder):
+    assert campaign(folder, "--points", "6", "--out", "out", "-j", "1").returncode == 0
+    table = folder / "out" / "campaign.parquet"
+    first = pq.read_table(table).to_pylist()
+    assert [row["index"] for row in first] == list(range(6))
+    assert (folder / "out" / "campaign.png").read_bytes().startswith(b"\x89PNG")
+
+    # As after an interruption: some rows in a part, no table yet.
+    pq.write_table(pq.read_table(table).slice(0, 4), table.with_name("part-0000000.parquet"))
+    table.unlink()
+    ended = campaign(folder, "--points", "6", "--out", "out", "-j", "1")
+    assert ended.returncode == 0, ended.stderr
+    assert _known(pq.read_table(table).to_pylist()) == _known(first)
+
+    again = ended.stdout.split("Drive one again: tcs-hil campaign study.toml ")[1].splitlines()[0]
+    row = json.loads(campaign(folder, *again.split(), "--out", "out", "--json").stdout)
+    assert _known([row]) == _known([first[row["index"]]])
+    assert (folder / "out" / f"point-{row['index']}.toml").is_file()
+
+
+@pytest.mark.parametrize(
+    ("broken", "arguments", "named"),
+    [
+        ("road.9.mu", [], "`road.9.mu`"),
+        ("road.0.mu", ["--only", "6"], "--only 6"),
+        ("colour", [], "`colour`"),
+    ],
+)
+def test_a_bad_study_is_refused_in_one_sentence(broken, arguments, named, folder):
+    (folder / "study.toml").write_text(STUDY.replace("road.0.mu", broken))
+    ended = campaign(folder, *arguments)
+    assert ended.returncode == 2
+    assert named in ended.stderr
+    assert len(ended.stderr.splitlines()) == 1

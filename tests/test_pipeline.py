@@ -3,14 +3,14 @@ import math
 import pytest
 from factories import measurement
 
-from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
+from tcs_hil.control.protocol import Proposal, SolveStatus, Source, WheelState
 from tcs_hil.estimator import Estimator
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.gate import Gate, GateSettings
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.pipeline import Law, Pipeline
 from tcs_hil.plausibility import Plausibility
-from tcs_hil.signals import NO_LIMIT, ControllerKind, TcsState, TorqueLimits
+from tcs_hil.signals import NO_LIMIT, ControllerKind, Suspect, TcsState, TorqueLimits
 from tcs_hil.supervisor import Supervisor, SupervisorSettings
 
 
@@ -114,3 +114,47 @@ def test_the_trace_tells_what_was_proposed(pipeline: Pipeline) -> None:
     pipeline.step(measurement())
     assert pipeline.trace is not None
     assert [p.torque_nm for p in pipeline.trace.proposals] == [60.0, 100.0]
+
+
+def test_what_is_not_believed_is_kept_from_the_estimator_and_told(pipeline: Pipeline) -> None:
+    jumped = measurement(wheel_speed_radps=(20.0, 20.0, 60.0, 20.0))
+    command = pipeline.step(jumped)
+    assert (command.state, command.fault_code) == (
+        TcsState.DEGRADED,
+        FaultCode.ONE_REAR_SPEED_IMPLAUSIBLE,
+    )
+    assert pipeline.trace is not None
+    assert pipeline.trace.suspects == Suspect.WHEEL_RL
+    assert pipeline.trace.estimate.vehicle_speed_mps == pytest.approx(20.0 * 0.318)
+
+
+def test_a_stand_in_for_a_law_is_followed_slowly(
+    pipeline: Pipeline, laws: tuple[Scripted, Scripted]
+) -> None:
+    stand_in = Proposal(90.0, SolveStatus.FAILED, source=Source.FALLBACK)
+    laws[0].proposal = stand_in
+    command = pipeline.step(measurement())
+    assert command.limits.left_nm == 61.0
+    assert (command.state, command.fault_code) == (
+        TcsState.DEGRADED,
+        FaultCode.CONTROLLER_REPLACED,
+    )
+
+
+def test_a_motor_that_is_asked_to_brake_is_no_reason_to_degrade(pipeline: Pipeline) -> None:
+    command = pipeline.step(measurement(driver_torque_nm=(-20.0, 100.0)))
+    assert command.fault_code is FaultCode.NONE
+    assert command.limits.left_nm == 0.0
+
+
+def test_overruns_reach_the_supervisor(pipeline: Pipeline) -> None:
+    for _ in range(5):
+        pipeline.sent(overran=True)
+    assert pipeline.step(measurement()).fault_code is FaultCode.OVERRUNS
+
+
+def test_what_was_allowed_reaches_the_plausibility(
+    pipeline: Pipeline, laws: tuple[Scripted, Scripted]
+) -> None:
+    codes = [pipeline.step(measurement()).fault_code for _ in range(60)]
+    assert codes[-1] is FaultCode.MOTOR_STATE_IMPLAUSIBLE  # 60 Nm allowed and none given

@@ -38,6 +38,7 @@ RISE_NM = GATE.rise_rate_nmps * PERIOD_S
 RELEASE_NM = GATE.release_rate_nmps * PERIOD_S
 RELEASE_TICKS = round(REQUEST_NM / RELEASE_NM) + 20
 GOOD = measurement(driver_torque_nm=(REQUEST_NM, REQUEST_NM))
+LEAST_NM = 40.0  # a motor that gives nothing of so little is not conspicuous
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 SPEEDS = ANY | st.floats(0.0, 200.0)
@@ -172,15 +173,18 @@ class Service(RuleBasedStateMachine):
     @rule()
     def the_way_back(self) -> None:
         for law in self.laws:
-            law.answer = Proposal(REQUEST_NM / 2.0)
-        states = [self.tick(GOOD).state for _ in range(1200)]
-        assert states[-1] is TcsState.ACTIVE
-        assert states[states.index(TcsState.ACTIVE) - 1] is TcsState.STANDBY
+            law.answer = Proposal(LEAST_NM)
+        before = self.state
+        for _ in range(1000):
+            before, now = self.state, self.tick(GOOD).state
+            if now is TcsState.ACTIVE:
+                break
+        assert (before, self.state) == (TcsState.STANDBY, TcsState.ACTIVE)
 
     @invariant()
     def a_state_is_one_of_the_table(self) -> None:
         assert self.state is not TcsState.OFF
 
 
-Service.TestCase.settings = settings(max_examples=60, stateful_step_count=25, deadline=None)
+Service.TestCase.settings = settings(max_examples=40, stateful_step_count=20, deadline=None)
 TestService = Service.TestCase

@@ -13,24 +13,47 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("tcs_hil", "plant_emulator")
-NOT_SOURCES = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "build", "dist", "runs")
+NOT_SOURCES = shutil.ignore_patterns(
+    ".*", "__pycache__", "*.egg-info", "*.so", "build", "dist", "runs"
+)
 KINDS_OF_DATA = {".dbc", ".j2", ".npz", ".toml"}
+DECIDED_BY = """
+from tcs_hil.control.backend import chosen_backend
+from tcs_hil.control.factory import make_controller
+from tcs_hil.control.protocol import WheelState
+from tcs_hil.control.settings import ControlSettings
+from tcs_hil.model.bank import KoopmanBank, default_bank_path
+from tcs_hil.model.vehicle import Vehicle
+from tcs_hil.signals import ControllerKind
+settings = ControlSettings()
+bank = KoopmanBank.load(default_bank_path(), settings.period_s)
+law = make_controller(ControllerKind.KMPC, settings, Vehicle(), bank)
+law.step(WheelState.at_rest(), 100.0)
+print(chosen_backend(ControllerKind.KMPC, settings))
+"""
+"""A program that lets the default law decide, and says which code it was."""
 
 
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("wheel")
+def built(folder: Path, **environment: str) -> Path:
     # From a copy: setuptools would pack what an earlier build left in the checkout.
     sources = shutil.copytree(ROOT, folder / "sources", symlinks=True, ignore=NOT_SOURCES)
     build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", str(folder)]
-    subprocess.run([*build, str(sources)], check=True)
+    subprocess.run([*build, str(sources)], check=True, env=os.environ | environment)
     return next(folder.glob("*.whl"))
 
 
 @pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return built(tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return programs(wheel, tmp_path_factory.mktemp("environment"))
+
+
+def programs(wheel: Path, folder: Path) -> Path:
     """The programs of an environment with the wheel, and our dependencies by reference."""
-    folder = tmp_path_factory.mktemp("environment")
     venv.create(folder, symlinks=True)
     python = folder / "bin" / "python"
     install = ["-m", "pip", "--python", str(python), "install", "--no-deps", "--no-index"]
@@ -50,12 +73,16 @@ def output(program: Path, *arguments: str, folder: Path) -> str:
 
 def package_files(root: Path) -> set[str]:
     files = (path for name in PACKAGES for path in (root / name).rglob("*") if path.is_file())
-    return {str(path.relative_to(root)) for path in files if "__pycache__" not in path.parts}
+    return {
+        str(path.relative_to(root))
+        for path in files
+        if "__pycache__" not in path.parts and path.suffix != ".so"  # compiled where it is used
+    }
 
 
 def test_the_wheel_holds_every_file_of_the_packages(wheel: Path) -> None:
     packed = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
-    assert packed == package_files(ROOT)
+    assert {name for name in packed if not name.endswith(".so")} == package_files(ROOT)
     assert {Path(name).suffix for name in packed} >= KINDS_OF_DATA
 
 
@@ -76,3 +103,16 @@ def test_the_installed_emulator_lists_every_scenario(installed: Path, tmp_path: 
     scenarios = ROOT / "plant_emulator" / "scenarios"
     missing = [path.stem for path in scenarios.rglob("*.toml") if path.stem not in listed]
     assert missing == []
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+def test_with_a_compiler_the_installed_laws_are_native(installed: Path, tmp_path: Path) -> None:
+    decided_by = output(installed / "python", "-c", DECIDED_BY, folder=tmp_path)
+    assert decided_by.strip() == "native"
+
+
+def test_without_a_compiler_the_wheel_is_built_and_the_laws_run_in_python(tmp_path: Path) -> None:
+    wheel = built(tmp_path, CC="false")
+    assert not [name for name in zipfile.ZipFile(wheel).namelist() if name.endswith(".so")]
+    python = programs(wheel, tmp_path / "environment") / "python"
+    assert output(python, "-c", DECIDED_BY, folder=tmp_path).strip() == "python"

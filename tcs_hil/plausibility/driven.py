@@ -7,7 +7,9 @@ import math
 from tcs_hil.plausibility.trace import Duration, SpeedTrace
 
 APART_RATIO, APART_MPS = 0.1, 0.8  # the shaft twists, and a ring tells late
+SLOWER_RATIO, SLOWER_MPS = 0.03, 0.2  # than the rolling wheels no driven one is
 STEP_MPS = 0.5  # by which the two do not part in one tick
+STOOD_M = 0.1  # way on which a sensor that works has moved
 FLUTTER_NM = 40.0  # which no motor changes by tick after tick
 MUTE_RATIO, MUTE_NM = 0.1, 50.0  # gives so little of so much it may give
 
@@ -25,7 +27,8 @@ class DrivenWheel:
         self._motor = SpeedTrace(math.inf, period_s)
         self._gap_mps = math.nan
         self._wheel_stepped = self._motor_stepped = False
-        self._forget = Duration(RECENT_S, period_s)
+        self._recent_ticks = round(RECENT_S / period_s)
+        self._remembered_ticks = 0
         self._apart = Duration(APART_S, period_s)
         self._together = Duration(HEALED_S, period_s)
 
@@ -34,35 +37,37 @@ class DrivenWheel:
 
         Returns the rim's speed: by the motor, which is the better sensor, or by the wheel.
         """
-        wheel, motor = self._wheel, self._motor
-        wheel.take(wheel_mps, motor_mps)
-        motor.take(motor_mps, wheel_mps)
-        gap_mps, far_mps = wheel_mps - motor_mps, APART_MPS + APART_RATIO * wheel_mps
+        self._wheel.take(wheel_mps)
+        self._motor.take(motor_mps)
+        stuck = self._wheel.stuck_beside(motor_mps) | self._motor.stuck_beside(wheel_mps)
+        gap_mps = wheel_mps - motor_mps
+        apart = abs(gap_mps) > APART_MPS + APART_RATIO * wheel_mps
         self._notice_step(gap_mps)
         if self.wheel_suspected or self.motor_suspected:
-            self._heal(abs(gap_mps) <= far_mps and not wheel.stuck and not motor.stuck)
-        elif self._apart.reached(abs(gap_mps) > far_mps) or wheel.stuck or motor.stuck:
-            self._accuse(wheel_mps, motor_mps, rolling_mps - far_mps)
+            self._heal(not stuck and not apart and not math.isnan(gap_mps))
+        elif self._apart.reached(apart) or stuck:
+            least_mps = (1.0 - SLOWER_RATIO) * rolling_mps - SLOWER_MPS
+            self._accuse((wheel_mps < least_mps, motor_mps < least_mps))
         return wheel_mps if self.motor_suspected or math.isnan(motor_mps) else motor_mps
 
     def _notice_step(self, gap_mps: float) -> None:
-        """Remember for a while who moved when the two parted in one tick."""
-        if abs(gap_mps - self._gap_mps) > STEP_MPS:
+        """Remember for a while who moved when the two first parted in one tick."""
+        if abs(gap_mps - self._gap_mps) > STEP_MPS and not self._remembered_ticks:
             self._wheel_stepped = self._wheel.change_mps > self._motor.change_mps
             self._motor_stepped = not self._wheel_stepped
-        elif self._forget.reached(self._wheel_stepped or self._motor_stepped):
+            self._remembered_ticks = self._recent_ticks
+        elif self._remembered_ticks:
+            self._remembered_ticks -= 1
+        else:
             self._wheel_stepped = self._motor_stepped = False
         self._gap_mps = gap_mps
 
-    def _accuse(self, wheel_mps: float, motor_mps: float, least_mps: float) -> None:
-        """The one that stands still, that stepped, or is slower than a driven wheel can be."""
-        evidence = (
-            (self._wheel.stuck, self._motor.stuck),
-            (self._wheel_stepped, self._motor_stepped),
-            (wheel_mps < least_mps, motor_mps < least_mps),
-        )
-        verdict = next((pair for pair in evidence if pair[0] != pair[1]), (True, True))
-        self.wheel_suspected, self.motor_suspected = verdict
+    def _accuse(self, slower: tuple[bool, bool]) -> None:
+        """Who is slower than a driven wheel can be, who stepped, who stands still; else both."""
+        stepped = (self._wheel_stepped, self._motor_stepped)
+        standing = (self._wheel.stood_m > STOOD_M, self._motor.stood_m > STOOD_M)
+        decisive = (pair for pair in (slower, stepped, standing) if pair[0] != pair[1])
+        self.wheel_suspected, self.motor_suspected = next(decisive, (True, True))
 
     def _heal(self, agree: bool) -> None:
         if self._together.reached(agree):

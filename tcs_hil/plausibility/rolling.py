@@ -11,7 +11,7 @@ RATE_MPS2 = 16.0  # beyond it nothing that only rolls gains or loses speed
 CURVE_RATIO, CURVE_M2PS2 = 0.35, 16.0  # left from right: tightest curve; lateral m/s2 times track
 FASTER_RATIO, FASTER_MPS = 0.1, 0.5  # than the fastest driven wheel
 ASTRAY_MPS = 0.7  # of an acceleration that two wheels contradict
-ACCEL_MAX_MPS2 = 20.0
+SPEED_MAX_MPS, ACCEL_MAX_MPS2 = 110.0, 20.0  # of any car
 
 APART_S, FASTER_S, HEALED_S = 0.05, 0.1, 0.1
 BLIND_S = 1.0  # the accelerometer alone carries a speed no longer
@@ -28,22 +28,33 @@ class RollingWheel:
 
     def __init__(self, period_s: float) -> None:
         self.suspected = False
+        self.too_fast = False
         self.speed_mps = math.nan
         self._trace = SpeedTrace(RATE_MPS2, period_s)
         self._faster = Duration(FASTER_S, period_s)
         self._healed = Duration(HEALED_S, period_s)
 
-    def take(self, speed_mps: float, other_mps: float) -> bool:
-        """Judge the newest speed by its own course and the other's; whether it is believed."""
+    @property
+    def believed_mps(self) -> float:
+        """The speed, NaN while it is not believed."""
+        return math.nan if self.suspected else self.speed_mps
+
+    def take(self, speed_mps: float) -> None:
+        """Judge the newest speed by its own course."""
         self.speed_mps = speed_mps
-        self._trace.take(speed_mps, other_mps)
-        if self._trace.jumped or self._trace.stuck:
+        self._trace.take(speed_mps)
+        if self._trace.jumped or speed_mps > SPEED_MAX_MPS:
             self.suspected = True
-        return not self.suspected and not math.isnan(speed_mps)
+
+    def stand_beside(self, other_mps: float) -> None:
+        """Judge it by the other wheel of the axle, NaN unless that is believed."""
+        if self._trace.stuck_beside(other_mps):
+            self.suspected = True
 
     def compare(self, most_mps: float) -> None:
         """Judge it by the driven wheels, which are the faster ones while they drive."""
-        if self._faster.reached(self.speed_mps > most_mps):
+        self.too_fast = self.speed_mps > most_mps
+        if self._faster.reached(self.too_fast):
             self.suspected = True
 
     def heals(self, agrees: bool) -> bool:
@@ -61,24 +72,26 @@ class RollingAxle:
         self.accel_suspected = False
         self.speed_mps = math.nan  # of the car, as far as it is known
         self._period_s = period_s
+        self._contradiction = False  # of the two wheels, beyond what a curve explains
         self._apart = Duration(APART_S, period_s)
         self._astray = Duration(APART_S, period_s)
         self._pardon_s = 0.0
         self._blind_s = 0.0
         self._bias_mps2 = 0.0
+        self._speed_gain = SPEED_GAIN_PER_S * period_s
+        self._bias_gain = BIAS_GAIN_PER_S2 * period_s
 
     def take(self, left_mps: float, right_mps: float, accel_mps2: float) -> None:
         """Hear the two wheels and the accelerometer, NaN for none."""
-        left = self.left.take(left_mps, right_mps)
-        right = self.right.take(right_mps, left_mps)
+        left, right = self.left, self.right
+        left.take(left_mps)
+        right.take(right_mps)
+        left.stand_beside(right.believed_mps)
+        right.stand_beside(left.believed_mps)
         self._carry_on(accel_mps2)
-        if left and right:
-            self._contradict(left_mps, right_mps)
-            self._learn(0.5 * (left_mps + right_mps))
-        elif left or right:
-            self._learn(left_mps if left else right_mps)
-        else:
-            self._blind_s += self._period_s
+        mean_mps = 0.5 * (left_mps + right_mps)
+        self._compare_with_each_other(left_mps - right_mps, mean_mps)
+        self._learn(left.believed_mps, right.believed_mps)
 
     def compare(self, driven_mps: float, motors_nm: Pair) -> None:
         """Hear the faster one of the driven wheels, and what the motors give."""
@@ -96,36 +109,48 @@ class RollingAxle:
         """Believe what agrees with the car's speed, or with driven wheels that only roll."""
         if not wheel.suspected:
             return
-        known = self._blind_s < BLIND_S
-        agrees = known and near(wheel.speed_mps, self.speed_mps, BLIND_MPS2 * self._blind_s)
+        witness = self._blind_s < BLIND_S and not self._contradiction and not wheel.too_fast
+        more_mps = BLIND_MPS2 * self._blind_s
+        agrees = witness and near(wheel.speed_mps, self.speed_mps, more_mps)
         if wheel.heals(agrees or near(wheel.speed_mps, rolling_mps)):
             self.speed_mps = wheel.speed_mps
 
     def _carry_on(self, accel_mps2: float) -> None:
-        self._pardon_s = max(self._pardon_s - self._period_s, 0.0)
         if abs(accel_mps2) > ACCEL_MAX_MPS2:
             self._pardon_s = PARDON_S
         self.accel_suspected = self._pardon_s > 0.0
-        if not self.accel_suspected and not math.isnan(accel_mps2):
+        if self.accel_suspected:
+            self._pardon_s -= self._period_s
+        elif not math.isnan(accel_mps2):
             gained_mps = self._period_s * (accel_mps2 - self._bias_mps2)
             self.speed_mps = max(self.speed_mps + gained_mps, 0.0)
 
-    def _contradict(self, left_mps: float, right_mps: float) -> None:
+    def _compare_with_each_other(self, gap_mps: float, mean_mps: float) -> None:
         """Two wheels against each other, or both against the accelerometer."""
-        mean_mps = 0.5 * (left_mps + right_mps)
+        left, right = self.left, self.right
         curve_mps = min(CURVE_RATIO * mean_mps, CURVE_M2PS2 / max(mean_mps, 1.0))
-        if self._apart.reached(abs(left_mps - right_mps) > NEAR_MPS + curve_mps):
-            self.left.suspected = self.right.suspected = True
+        self._contradiction = abs(gap_mps) > NEAR_MPS + curve_mps
+        if left.suspected or right.suspected:
+            return
+        if self._apart.reached(self._contradiction):
+            left.suspected = right.suspected = True
         astray = abs(mean_mps - self.speed_mps) > ASTRAY_MPS + NEAR_RATIO * mean_mps
         if self._astray.reached(astray and mean_mps > MOVING_MPS):
             self._pardon_s = PARDON_S
             self.speed_mps = mean_mps
 
-    def _learn(self, speed_mps: float) -> None:
-        error_mps = speed_mps - self.speed_mps
-        self._blind_s = 0.0
-        if not math.isfinite(error_mps):  # the first speed is taken as it is
-            self.speed_mps = speed_mps
+    def _learn(self, left_mps: float, right_mps: float) -> None:
+        """Correct the speed by the wheels that are believed, as far as there are any."""
+        speed_mps = 0.5 * (left_mps + right_mps)
+        if math.isnan(speed_mps):
+            speed_mps = right_mps if math.isnan(left_mps) else left_mps
+        if math.isnan(speed_mps):
+            self._blind_s += self._period_s
             return
-        self.speed_mps += SPEED_GAIN_PER_S * self._period_s * error_mps
-        self._bias_mps2 -= BIAS_GAIN_PER_S2 * self._period_s * error_mps
+        self._blind_s = 0.0
+        error_mps = speed_mps - self.speed_mps
+        if -math.inf < error_mps < math.inf:
+            self.speed_mps += self._speed_gain * error_mps
+            self._bias_mps2 -= self._bias_gain * error_mps
+        else:  # the first speed is taken as it is
+            self.speed_mps = speed_mps

@@ -11,12 +11,10 @@ from tcs_hil.plausibility.rolling import RollingAxle
 from tcs_hil.plausibility.trace import Duration
 from tcs_hil.signals import FourWheels, InputState, Measurement, Pair, Suspect
 
-SPEED_MAX_MPS = 110.0
 REQUEST_MAX_SHARE = 1.25  # of what a motor can give
 EXCESS_RATIO, EXCESS_NM, EXCESS_S = 0.05, 15.0, 0.1
 PATIENCE_S = 0.005  # two cycles: what is older says nothing of the present
 
-WHEELS = (Suspect.WHEEL_FL, Suspect.WHEEL_FR, Suspect.WHEEL_RL, Suspect.WHEEL_RR)
 MOTORS = Suspect.MOTOR_LEFT | Suspect.MOTOR_RIGHT
 UNKNOWN = (math.nan, math.nan)
 
@@ -27,7 +25,6 @@ class Plausibility:
     def __init__(self, vehicle: Vehicle, period_s: float) -> None:
         self._radius_m = vehicle.wheel_radius_m
         self._rim_m = vehicle.wheel_radius_m / vehicle.gear_ratio  # of a motor's rotation
-        self._most_radps = SPEED_MAX_MPS / vehicle.wheel_radius_m
         self._most_nm = REQUEST_MAX_SHARE * vehicle.motor_torque_max_nm
         self._axle = RollingAxle(period_s)
         self._left, self._right = DrivenWheel(period_s), DrivenWheel(period_s)
@@ -48,7 +45,7 @@ class Plausibility:
         axle.compare(max(left_mps, right_mps) if known else math.nan, given_nm)
         for torque, given, allowed in zip(self._torques, given_nm, self._allowed_nm, strict=True):
             torque.take(given, allowed)
-        return self._bits(m, self._denied(given_nm, m.driver_torque_nm))
+        return self._bits(self._denied(given_nm, m.driver_torque_nm))
 
     def sent(self, allowed_nm: Pair) -> None:
         """Hear, at the tick's end, what each motor may give."""
@@ -76,12 +73,15 @@ class Plausibility:
 
     def _denied(self, given_nm: Pair, asked_nm: Pair) -> bool:
         """Whether the driver is said to ask for less than a motor gives, or for too much."""
+        (given_left, given_right), (left, right) = given_nm, asked_nm
         share = 1.0 + EXCESS_RATIO
-        left_nm, right_nm = given_nm[0] - share * asked_nm[0], given_nm[1] - share * asked_nm[1]
-        excess = self._excess.reached(left_nm > EXCESS_NM or right_nm > EXCESS_NM)
+        excess = self._excess.reached(
+            given_left > share * max(left, 0.0) + EXCESS_NM
+            or given_right > share * max(right, 0.0) + EXCESS_NM
+        )
         return excess or max(asked_nm) > self._most_nm
 
-    def _bits(self, m: Measurement, denied: bool) -> int:
+    def _bits(self, denied: bool) -> int:
         left, right, axle = self._left, self._right, self._axle
         doubtful = (
             left.wheel_suspected,
@@ -93,14 +93,9 @@ class Plausibility:
             axle.accel_suspected,
             denied,
         )
-        bits = 0
-        if True in doubtful:
-            bits = sum(bit for bit, doubt in zip(Suspect, doubtful, strict=True) if doubt)
-        return bits | self._too_fast(m) if max(m.wheel_speed_radps) > self._most_radps else bits
-
-    def _too_fast(self, m: Measurement) -> int:
-        speeds = zip(WHEELS, m.wheel_speed_radps, strict=True)
-        return sum(bit for bit, speed in speeds if speed > self._most_radps)
+        if True not in doubtful:
+            return 0
+        return sum(bit for bit, doubt in zip(Suspect, doubtful, strict=True) if doubt)
 
 
 def screened(m: Measurement, suspects: int) -> Measurement:

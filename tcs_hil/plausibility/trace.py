@@ -18,43 +18,48 @@ class Duration:
 
     def reached(self, holds: bool) -> bool:
         """Hear of one tick; whether it has been long enough."""
-        if holds:
-            self._ticks = min(self._ticks + 1, self._needed)
-        elif self._ticks:
-            self._ticks = max(self._ticks - 2, 0)
+        if not holds:
+            self._ticks = max(self._ticks - 2, 0) if self._ticks else 0
+            return False
+        if self._ticks < self._needed:
+            self._ticks += 1
         return self._ticks == self._needed
 
 
 class SpeedTrace:
-    """One speed as it comes, beside another that should go with it; NaN is none.
+    """One speed as it comes; NaN is none.
 
     ``change_mps``: from the speed before.  ``jumped``: no wheel gets there from it.
-    ``stuck``: it stands still on a way on which the other has moved.
     """
 
     def __init__(self, rate_mps2: float, period_s: float) -> None:
         self.change_mps = math.nan
         self.jumped = False
-        self.stuck = False
         self._step_mps = rate_mps2 * period_s
         self._period_s = period_s
         self._speed_mps = math.nan
-        self._other_mps = math.nan  # what the other was when this one last moved
+        self._other_mps = math.nan
         self._stood_ticks = 0
 
-    def take(self, speed_mps: float, other_mps: float) -> None:
-        """Take the newest speed of both."""
+    def take(self, speed_mps: float) -> None:
+        """Take the newest speed."""
         self.change_mps = change_mps = abs(speed_mps - self._speed_mps)
-        # What is this small is none: most ticks end the question here.
+        # What is this small is no jump: almost every tick ends the question here.
         self.jumped = change_mps > self._step_mps and self._jumps(change_mps, speed_mps)
-        if change_mps == 0.0:
-            self._stood_ticks += 1
-            way_m = self._stood_ticks * self._period_s * speed_mps
-            self.stuck = way_m > RING_M and far(other_mps, self._other_mps)
-            return
-        self.stuck = False
-        self._stood_ticks = 0
-        self._speed_mps, self._other_mps = speed_mps, other_mps
+        self._stood_ticks = self._stood_ticks + 1 if change_mps == 0.0 else 0
+        self._speed_mps = speed_mps
+
+    def stuck_beside(self, other_mps: float) -> bool:
+        """Whether it stands still on a way on which the other speed has moved; once a tick."""
+        if not self._stood_ticks:
+            self._other_mps = other_mps
+            return False
+        return self.stood_m > RING_M and far(other_mps, self._other_mps)
+
+    @property
+    def stood_m(self) -> float:
+        """Way of the rim since the speed last changed."""
+        return self._stood_ticks * self._period_s * self._speed_mps
 
     def _jumps(self, change_mps: float, speed_mps: float) -> bool:
         edges_mps = EDGE_MPS + EDGE_RATIO * min(speed_mps, self._speed_mps)

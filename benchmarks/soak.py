@@ -125,7 +125,7 @@ def _await_first_tick(watcher: Watcher, limit_s: float) -> None:
 def table(samples: Sequence[Sample]) -> list[str]:
     """Some of the samples as rows, ticks added up over what lies between two of them."""
     step = max(-(-len(samples) // ROWS), 1)
-    rows = [_row(samples[max(end - step, 0) : end]) for end in range(step, len(samples) + 1, step)]
+    rows = [_row(samples[begin : begin + step]) for begin in range(0, len(samples), step)]
     return markdown(HEADINGS, rows)
 
 

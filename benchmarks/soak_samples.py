@@ -12,8 +12,8 @@ import numpy as np
 from tcs_hil.runtime.recording import Bookmark, read_on
 from tcs_hil.runtime.times import times_us
 
-NS_PER_S = 1e9
 S_PER_H = 3600.0
+COUNTERS = ("rx_frames", "tx_frames", "lost_frames", "bus_errors", "e2e_errors")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +87,6 @@ class Watcher:
             jitter_p99_us=p99_us,
             **{name: int(newest[name]) for name in COUNTERS},
         )
-
-
-COUNTERS = ("rx_frames", "tx_frames", "lost_frames", "bus_errors", "e2e_errors")
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,8 +54,9 @@ class Gate:
     """One motor's gate.  Total: any float in, a number in [0, request] or ``NO_LIMIT`` out.
 
     From one finite ceiling to the next it rises by no more than the permission
-    allows, whatever the request does in between.  Losing the controller must
-    never mean losing the car: RELEASE ramps the ceiling up to the driver's
+    allows, whatever the request does in between.  A law that is trusted again is
+    followed slowly until the ceiling has met what it wants.  Losing the controller
+    must never mean losing the car: RELEASE ramps the ceiling up to the driver's
     request and then lifts it.
     """
 
@@ -74,18 +75,29 @@ class Gate:
         self._lift_ticks = round(settings.lift_s / period_s)
         self._ticks_to_lift = 0
         self._ceiling_nm = NO_LIMIT
+        self._behind = False  # not met what is wanted since it was last not trusted
 
     def limit(self, wanted_nm: float, request_nm: float, permission: Permission) -> float:
         """Ceiling (Nm, or ``NO_LIMIT``) for the coming period."""
         most_nm = max(request_nm, 0.0) if math.isfinite(request_nm) else BEYOND_ANY_REQUEST_NM
         before_nm = min(self._ceiling_nm, most_nm)  # without a ceiling the request is in force
         target_nm = _target_nm(wanted_nm, before_nm, most_nm, permission)
-        highest_nm = min(before_nm + self._rise_nm[permission], most_nm)
+        highest_nm = min(before_nm + self._rise(wanted_nm, before_nm, permission), most_nm)
         if target_nm > before_nm and self._window_nm:
             highest_nm = min(highest_nm, min(self._window_nm) + self._window_rise_nm)
         ceiling_nm = min(max(target_nm, before_nm - self._fall_nm, 0.0), highest_nm)
         self._ceiling_nm = self._kept_or_lifted(ceiling_nm, most_nm, permission)
         return self._ceiling_nm
+
+    def _rise(self, wanted_nm: float, before_nm: float, permission: Permission) -> float:
+        """Most it may rise now; trust comes back without a step, once wish and ceiling have met."""
+        if permission is not Permission.FOLLOW:
+            self._behind = True
+        elif wanted_nm <= before_nm:
+            self._behind = False
+        elif self._behind:
+            permission = Permission.FOLLOW_SLOWLY
+        return self._rise_nm[permission]
 
     def _kept_or_lifted(self, ceiling_nm: float, most_nm: float, permission: Permission) -> float:
         """The ceiling, or ``NO_LIMIT`` where it holds nothing back."""

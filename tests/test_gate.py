@@ -72,6 +72,29 @@ def test_a_rise_takes_the_ticks_its_rate_asks_for() -> None:
     assert limits(holding(80.0, LAX), 135.0, 250.0, FOLLOW, 4) == [100.0, 120.0, 135.0, 135.0]
 
 
+@pytest.mark.parametrize("who", [SLOWLY, HOLD, RELEASE])
+def test_trust_comes_back_without_a_step(who: Permission) -> None:
+    gate = holding(80.0)
+    before_nm = gate.limit(90.0, 250.0, who)
+    back = limits(gate, before_nm + 2.5, 250.0, FOLLOW, 4)
+    assert back == [before_nm + rise for rise in (1.0, 2.0, 2.5, 2.5)]
+    assert gate.limit(before_nm + 12.5, 250.0, FOLLOW) == before_nm + 12.5
+
+
+def test_a_wish_below_the_ceiling_is_met_at_once() -> None:
+    gate = holding(80.0)
+    gate.limit(90.0, 250.0, HOLD)
+    assert gate.limit(70.0, 250.0, FOLLOW) == 70.0
+    assert gate.limit(90.0, 250.0, FOLLOW) == 90.0
+
+
+def test_a_wish_that_is_no_number_meets_nothing() -> None:
+    gate = holding(80.0)
+    gate.limit(90.0, 250.0, HOLD)
+    assert gate.limit(math.nan, 250.0, FOLLOW) == 80.0
+    assert gate.limit(90.0, 250.0, FOLLOW) == 81.0
+
+
 def test_a_negative_proposal_is_a_ceiling_of_zero() -> None:
     assert limits(holding(80.0), -5.0, 250.0, FOLLOW, 2) == [0.0, 0.0]
 

@@ -16,7 +16,7 @@ PACKAGES = ("tcs_hil", "plant_emulator")
 NOT_SOURCES = shutil.ignore_patterns(
     ".*", "__pycache__", "*.egg-info", "*.so", "build", "dist", "runs"
 )
-KINDS_OF_DATA = {".dbc", ".j2", ".npz", ".toml"}
+KINDS_OF_DATA = {".css", ".dbc", ".j2", ".js", ".LICENSE", ".npz", ".toml"}
 DECIDED_BY = """
 from tcs_hil.control.backend import chosen_backend
 from tcs_hil.control.factory import make_controller

@@ -12,7 +12,8 @@ class MessageWatch:
     """Advances the E2E state machine by every frame and by every cycle without one.
 
     A frame too many counts as an error, whatever its CRC says: it takes two
-    senders for that, and one of them is not who we think.
+    senders for that, and one of them is not who we think.  Unless it repeats the
+    one before: that is an echo, and brings nothing that could be believed.
     """
 
     __slots__ = ("_cadence", "_machine")
@@ -25,7 +26,8 @@ class MessageWatch:
         """Count a frame that came at ``stamp_ns``, judged as ``status``."""
         self._pass_time(stamp_ns)
         expected = self._cadence.arrive(stamp_ns)
-        self._machine.add(status if expected else E2EStatus.ERROR)
+        believable = expected or status is E2EStatus.REPEATED
+        self._machine.add(status if believable else E2EStatus.ERROR)
 
     def state(self, now_ns: int) -> InputState:
         """State at ``now_ns``, every cycle without its frame counted."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from datetime import datetime
 from pathlib import Path
 
 import click
@@ -15,8 +16,9 @@ from tcs_hil.cli.progress import progress_bar
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.demo import Demo, Outcome, run_demo
 from tcs_hil.hil.machine import describe_machine
-from tcs_hil.hil.page import write_page
 from tcs_hil.hil.processes import interrupted_by_sigterm
+from tcs_hil.hil.report.page import write_report
+from tcs_hil.hil.suite.provenance import sum_up
 from tcs_hil.hil.table import (
     COLUMNS,
     RUN_COLUMNS,
@@ -55,10 +57,13 @@ def command(output: Path, interface: str, channel: str | None, as_json: bool) ->
         output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ConfigError(f"{output}: cannot be made ({error.strerror})") from error
+    started = datetime.now().astimezone()
     with progress_bar("starting") as advance, interrupted_by_sigterm():
         demo = run_demo(output, interface, channel, advance)
-    page = output / "index.html"
-    write_page(page, demo)
+    suite = sum_up(
+        "Traction control on a CAN bus", [each.result for each in demo.outcomes], started
+    )
+    page = write_report(output, suite, figures=demo.figures)
     figures = msgspec.json.encode([as_dict(outcome) for outcome in demo.outcomes])
     (output / "results.json").write_bytes(figures)
     (output / "results.md").write_text(markdown(demo.outcomes), encoding="utf-8")

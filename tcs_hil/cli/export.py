@@ -33,7 +33,7 @@ def command(run: tuple[Path, ...], output: Path, dbc: Path | None) -> None:
     .mf4), a flight recording and a truth (.npz), all put on one time base in
     seconds since the start of the run.
 
-    Example: tcs-hil export runs/demo/manoeuvre-1-kmpc -o drive.mf4
+    Example: tcs-hil export runs/demo/runs/manoeuvre-1-quarter-car-kmpc-paper-lockstep -o drive.mf4
     """
     write = writer_of(output)
     with progress_bar("reading") as advance:

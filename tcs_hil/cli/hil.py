@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import time
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -18,16 +16,15 @@ from tcs_hil.cli.verdicts import show
 from tcs_hil.config import read_toml
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.judging.verdict import Verdict
-from tcs_hil.hil.machine import describe_machine
 from tcs_hil.hil.processes import interrupted_by_sigterm
 from tcs_hil.hil.report.page import write_report
 from tcs_hil.hil.run import MODES
 from tcs_hil.hil.suite.case import Case, check_cases, with_law
 from tcs_hil.hil.suite.junit import write_junit
 from tcs_hil.hil.suite.library import scenario_case, suite_cases
+from tcs_hil.hil.suite.provenance import sum_up
 from tcs_hil.hil.suite.result import SuiteResult, load_results
 from tcs_hil.hil.suite.runner import Bench, run_cases
-from tcs_hil.hil.suite.versions import versions
 from tcs_hil.service.settings import ControllerName, ServiceConfig
 
 EXIT_STATUS = {Verdict.PASSED: 0, Verdict.FAILED: 1, Verdict.BLOCKED: 3}
@@ -108,19 +105,10 @@ def command(scenarios: tuple[str, ...], **options: Any) -> None:
     )
     jobs = min(bench.jobs(options["jobs"]), len(cases))
     outputs = _outputs(options)
-    begun_s, started = time.monotonic(), datetime.now().astimezone()
+    started = datetime.now().astimezone()
     with progress_bar("starting") as advance, interrupted_by_sigterm():
         results = run_cases(cases, bench, jobs, advance)
-    suite = SuiteResult(
-        title=", ".join((*options["suites"], *scenarios)),
-        command=" ".join(["tcs-hil", *sys.argv[1:]]),
-        started=started.isoformat(timespec="seconds"),
-        machine=describe_machine(),
-        versions=versions(),
-        jobs=jobs,
-        wall_s=time.monotonic() - begun_s,
-        results=results,
-    )
+    suite = sum_up(", ".join((*options["suites"], *scenarios)), results, started, jobs)
     _publish(suite, outputs)
     click.get_current_context().exit(EXIT_STATUS[suite.verdict])
 

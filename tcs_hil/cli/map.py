@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import click
-from rich.console import Console
-from rich.table import Table
 
+from tcs_hil.canbus.database import parse_dbc
 from tcs_hil.canbus.mapping.findings import Finding, Weight
 from tcs_hil.canbus.mapping.plan import KINDS, MappedInput, MappedMessage, Plan, RangeRule, Rule
+from tcs_hil.canbus.mapping.propose import propose
 from tcs_hil.cli.options import json_option
 from tcs_hil.config import read_toml
 from tcs_hil.service.bus_end import examine_map
@@ -55,6 +55,16 @@ def check(context: click.Context, config_path: Path, as_json: bool) -> None:
         context.exit(1)
 
 
+@command.command()
+@click.argument("dbc_path", metavar="DBC", type=click.Path(dir_okay=False, path_type=Path))
+def init(dbc_path: Path) -> None:
+    """Print a configuration with a signal map, guessed from the names and units in DBC.
+
+    Example: tcs-hil map init mycar.dbc > mycar.toml
+    """
+    click.echo(propose(parse_dbc(dbc_path)[1], str(dbc_path)), nl=False)
+
+
 def _as_dict(plan: Plan, found: list[Finding], runs: bool) -> dict[str, Any]:
     return {
         "runs": runs,
@@ -68,23 +78,18 @@ def _as_dict(plan: Plan, found: list[Finding], runs: bool) -> dict[str, Any]:
 
 
 def _print(plan: Plan, found: list[Finding], runs: bool) -> None:
-    _print_table("read", _inputs(plan))
-    _print_table("sent", _outputs(plan))
+    """Print lines, not a table: names of signals are long and want to be copied."""
+    for row in _inputs(plan):
+        click.echo(
+            f"read     {row['input']}: {row['signal']} in {row['unit']}, steps of {row['step']}, "
+            f"every {row['cycle']}, {row['believed']}"
+        )
+    for row in _outputs(plan):
+        click.echo(f"sent     {row['output']}: {row['signal']}, every {row['cycle']}")
     for finding in sorted(found, key=lambda finding: ORDER.index(finding.weight)):
         weight = click.style(f"{finding.weight.value:7}", **STYLES[finding.weight])
         click.echo(f"{weight}  {finding.key}: {finding.sentence}")
     click.echo("The service can run with this map." if runs else "The service cannot run with it.")
-
-
-def _print_table(title: str, rows: list[Row]) -> None:
-    if not rows:
-        return
-    table = Table(title=title, title_justify="left")
-    for name in rows[0]:
-        table.add_column(name)
-    for row in rows:
-        table.add_row(*row.values())
-    Console().print(table)
 
 
 def _inputs(plan: Plan) -> list[Row]:
@@ -92,8 +97,8 @@ def _inputs(plan: Plan) -> list[Row]:
         {
             "input": name,
             "signal": f"{mapped.message}.{mapped.value.name}",
-            "comes in": mapped.unit,
-            "one step": f"{abs(mapped.value.scale):.3g} {KINDS[name].value}",
+            "unit": mapped.unit,
+            "step": f"{abs(mapped.value.scale):.3g} {KINDS[name].value}",
             "believed": _believed(mapped),
             "cycle": _cycle(plan.messages.get(mapped.message)),
         }
@@ -115,12 +120,13 @@ def _outputs(plan: Plan) -> list[Row]:
 
 def _believed(mapped: MappedInput) -> str:
     rules = (*mapped.page, *mapped.rules)
-    return " and ".join(_in_words(rule, mapped) for rule in rules) or "always"
+    words = " and ".join(_in_words(rule, mapped) for rule in rules)
+    return f"while {words}" if words else "always"
 
 
 def _in_words(rule: Rule, mapped: MappedInput) -> str:
     if isinstance(rule, RangeRule):
-        return f"{rule.low:g} to {rule.high:g}"
+        return f"from {rule.low:g} to {rule.high:g}"
     own = rule.signal.name == mapped.value.name
     values = ", ".join(map(str, sorted(rule.values)))
     return f"{'raw' if own else rule.signal.name} is {'' if rule.wanted else 'not '}{values}"

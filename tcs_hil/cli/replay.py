@@ -55,7 +55,7 @@ def command(
     .mf4) and, of a run in real time, its flight recording, which tells exactly
     when it ticked.  The exit status is 1 where something differs.
 
-    Example: tcs-hil replay runs/demo/manoeuvre-1-kmpc
+    Example: tcs-hil replay runs/demo/runs/manoeuvre-1-quarter-car-kmpc-paper-lockstep
     """
     sources = find_sources(run)
     path = options.pop("config_path")

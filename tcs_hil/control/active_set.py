@@ -30,17 +30,20 @@ class ActiveSets:
     def __init__(self, hessian: FloatArray, scale: float) -> None:
         self._hessian, self._scale, self._n = hessian * scale, scale, len(hessian)
         self._known: dict[Sides, FloatArray] = {}
-        self._answers: FloatArray | None = None  # for the bounds assumed active
+        self._sides: Sides = ()
+        self._answers: FloatArray | None = None  # for the sides assumed
+        self._margins: list[float] = []  # of the last question
         self._question = np.empty(self._n + 2)
 
     def assume(self, sides: Sides | None) -> None:
         """From now on these bounds are active; None: nobody knows."""
+        self._sides = sides or ()
         self._answers = None if sides is None else self._answers_for(sides)
 
     def solve(self, gradient: FloatArray, lower: float, upper: float) -> FloatArray | None:
         """Solution x (n,), or None if other bounds than the assumed ones are active.
 
-        Whatever is not finite spoils every product, and so ends in None.
+        Everything must be finite.
         """
         if self._answers is None:
             return None
@@ -48,7 +51,21 @@ class ActiveSets:
         question[:n] = gradient
         question[n], question[n + 1] = lower, upper
         answer: FloatArray = self._answers.dot(question)
-        return answer[:n] if min(answer[n:].tolist()) >= MARGIN else None
+        self._margins = answer[n:].tolist()
+        return answer[:n] if min(self._margins) >= MARGIN else None
+
+    def correct(self) -> None:
+        """Assume better bounds after a question in vain: all that were wrong change sides."""
+        sides, margins = list(self._sides), iter(self._margins)
+        for index in (i for i, side in enumerate(self._sides) if side):
+            if next(margins) < MARGIN:
+                sides[index] = 0
+        free = [i for i, side in enumerate(self._sides) if not side]
+        for side in (-1, 1):
+            for index in free:
+                if next(margins) < MARGIN:
+                    sides[index] = side
+        self.assume(tuple(sides))
 
     def _answers_for(self, sides: Sides) -> FloatArray:
         answers = self._known.get(sides)

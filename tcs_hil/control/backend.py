@@ -14,6 +14,7 @@ Backend = Literal["native", "python"]
 NATIVE_LAWS = {
     ("paper", ControllerKind.KMPC),
     ("paper", ControllerKind.NMPC),
+    ("default", ControllerKind.KMPC),
     ("default", ControllerKind.NMPC),
 }
 """Presets and laws that have a native step."""

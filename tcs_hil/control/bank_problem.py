@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.control.condense import LinearSystem, condense
-from tcs_hil.control.plan import Plan
-from tcs_hil.control.qp import OsqpBox
 from tcs_hil.control.settings import BankKmpcSettings, ControlSettings
 from tcs_hil.model.bank import KoopmanBank
 from tcs_hil.model.observables import NZ, Observable
@@ -18,7 +18,7 @@ INTEGRAL, DISTURBANCE, NX = NZ, NZ + 1, NZ + 2
 """State x = [z, e_int, d]: e_int in seconds, d the wheel speed per period no model explains."""
 
 UNIT_NM = 100.0
-"""The solver's unit of torque: its tolerances are absolute and meant for numbers near 1."""
+"""The solvers' unit of torque: their tolerances are absolute and meant for numbers near 1."""
 
 
 def extend_band(bank: KoopmanBank, band: int, slip_reference: float) -> LinearSystem:
@@ -48,59 +48,52 @@ def extend_band(bank: KoopmanBank, band: int, slip_reference: float) -> LinearSy
     return LinearSystem(a, b, c)
 
 
-TOLERANCE = 5e-6
-"""Of the solver, in its unit: plans are then exact to half a bit of the limit on the bus."""
-
-
-class BandProblem:
-    """Quadratic program over the torques U within [0, T_ref], in physical units.
+class BandCost(NamedTuple):
+    """The quadratic program of one band over the torques U within [0, T_ref], in `UNIT_NM`.
 
     Minimised is the sum of w_p (kappa - kappa_ref)² + w_i e_int² + w_u (T_ref - u)²
-    + w_du (u_k - u_{k-1})²; ``output_weights`` are those at the band's centre.
+    + w_du (u_k - u_{k-1})².  Its gradient at U = 0 is ``gradient_map`` x less
+    ``reduction_pull`` T_ref, and less ``change_pull`` times the last torque in the
+    first element, both torques in Nm.
     """
 
-    def __init__(self, system: LinearSystem, tuning: BankKmpcSettings, centre_mps: float) -> None:
-        n = tuning.horizon
-        dense = condense(system, n)
-        weights = np.tile(output_weights(tuning, centre_mps), n)
-        pull = 2.0 * dense.theta.T * weights  # (N, 2 N)
-        change = np.eye(n) - np.eye(n, k=-1)
-        on_torques = tuning.weight_reduction * np.eye(n) + tuning.weight_change * change.T @ change
-        hessian = pull @ dense.theta + 2.0 * on_torques
-        self._qp = OsqpBox(hessian * UNIT_NM**2, tolerance=TOLERANCE)
-        self._gradient_map = pull @ dense.gamma * UNIT_NM  # (N, NX)
-        self._reduction_pull = 2.0 * tuning.weight_reduction * UNIT_NM
-        self._change_pull = 2.0 * tuning.weight_change * UNIT_NM
-
-    def solve(
-        self,
-        state: FloatArray,
-        last_torque_nm: float,
-        torque_ref_nm: float,
-    ) -> Plan:
-        """Torques (N,) in Nm from x (NX,) on, warm from the last solution."""
-        gradient = self._gradient_map @ state - self._reduction_pull * torque_ref_nm
-        gradient[0] -= self._change_pull * last_torque_nm
-        plan = self._qp.solve(gradient, 0.0, torque_ref_nm / UNIT_NM)
-        return plan._replace(inputs=plan.inputs * UNIT_NM)
-
-    def reset(self) -> None:
-        """Forget the last solution."""
-        self._qp.reset()
+    hessian: FloatArray  # (N, N)
+    gradient_map: FloatArray  # (N, NX)
+    reduction_pull: float
+    change_pull: float
 
 
-def band_problems(
-    bank: KoopmanBank, settings: ControlSettings
-) -> tuple[list[LinearSystem], list[BandProblem]]:
-    """Extended system and problem of every band; two milliseconds each."""
-    tuning = settings.default.kmpc
-    systems = [
-        extend_band(bank, band, settings.slip_reference) for band in range(len(bank.centre_mps))
-    ]
-    return systems, [
-        BandProblem(system, tuning, centre)
-        for system, centre in zip(systems, bank.centre_mps, strict=True)
-    ]
+def band_cost(system: LinearSystem, tuning: BankKmpcSettings, centre_mps: float) -> BandCost:
+    """Cost over one band's predictor, with the output weights at its centre."""
+    n = tuning.horizon
+    dense = condense(system, n)
+    weights = np.tile(output_weights(tuning, centre_mps), n)
+    pull = 2.0 * dense.theta.T * weights  # (N, 2 N)
+    change = np.eye(n) - np.eye(n, k=-1)
+    on_torques = tuning.weight_reduction * np.eye(n) + tuning.weight_change * change.T @ change
+    hessian = pull @ dense.theta + 2.0 * on_torques
+    return BandCost(
+        hessian * UNIT_NM**2,
+        np.ascontiguousarray(pull @ dense.gamma * UNIT_NM),
+        2.0 * tuning.weight_reduction * UNIT_NM,
+        2.0 * tuning.weight_change * UNIT_NM,
+    )
+
+
+class Band(NamedTuple):
+    """One band's predictor and the problem over it."""
+
+    system: LinearSystem
+    cost: BandCost
+
+
+def bands_of(bank: KoopmanBank, settings: ControlSettings) -> list[Band]:
+    """Every band of the bank."""
+    tuning, bands = settings.default.kmpc, []
+    for index, centre_mps in enumerate(bank.centre_mps):
+        system = extend_band(bank, index, settings.slip_reference)
+        bands.append(Band(system, band_cost(system, tuning, centre_mps)))
+    return bands
 
 
 def output_weights(tuning: BankKmpcSettings, speed_mps: float) -> tuple[float, float]:

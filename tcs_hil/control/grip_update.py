@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tcs_hil.control.bank_kmpc import BankOptimiser, mixed
-from tcs_hil.control.plan import Plan
+from tcs_hil.control.bank_kmpc import BankOptimiser
+from tcs_hil.control.plan import Plan, mixed
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.bank import KoopmanBank

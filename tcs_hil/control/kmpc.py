@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,11 +21,30 @@ from tcs_hil.model.predictor import KoopmanPredictor
 FloatArray = NDArray[np.float64]
 
 
+class BoxQp(Protocol):
+    """Solves box QPs that share a Hessian, as ``OsqpBox`` does."""
+
+    def solve(self, gradient: FloatArray, lower: float, upper: float) -> Plan:
+        """Solve for g (n,) and the two bounds of every variable."""
+        ...
+
+    def reset(self) -> None:
+        """Forget the last solution."""
+        ...
+
+
 class KoopmanOptimiser:
-    """The quadratic program of Eq. (opt_LTI) over the scaled torques U = [u_0 .. u_{N-1}]."""
+    """The quadratic program of Eq. (opt_LTI) over the scaled torques U = [u_0 .. u_{N-1}].
+
+    ``box_qp`` makes its solver from the Hessian (N, N).
+    """
 
     def __init__(
-        self, predictor: KoopmanPredictor, tuning: KmpcSettings, slip_reference: float
+        self,
+        predictor: KoopmanPredictor,
+        tuning: KmpcSettings,
+        slip_reference: float,
+        box_qp: Callable[[FloatArray], BoxQp] = OsqpBox,
     ) -> None:
         self._predictor = predictor
         self._lifting = predictor.lifting
@@ -31,7 +53,7 @@ class KoopmanOptimiser:
         dense = condense(extend(predictor), tuning.horizon)
         hessian, gradient_map = quadratic_cost(dense, tuning)
         self._gradient_map = np.ascontiguousarray(gradient_map)  # (N, nz + 2)
-        self._qp = OsqpBox(hessian)
+        self._qp = box_qp(hessian)
         self._zero_torque = float(predictor.scale_input(0.0))
 
     def plan(self, wheel: WheelState, integral_s: float, torque_ref_nm: float) -> Plan:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,3 +32,10 @@ class Plan(NamedTuple):
         """
         failed = self.status is SolveStatus.FAILED
         return math.nan if failed else float(self.inputs[:2][-1])
+
+
+def mixed(plans: Sequence[Plan], weights: Sequence[float]) -> Plan:
+    """Weighted mean of plans; as bad as the worst of them, as long as all together."""
+    inputs = sum(weight * plan.inputs for plan, weight in zip(plans, weights, strict=True))
+    status = max((plan.status for plan in plans), default=SolveStatus.FAILED)
+    return Plan(np.asarray(inputs), status, sum(plan.iterations for plan in plans))

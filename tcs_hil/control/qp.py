@@ -19,6 +19,7 @@ FloatArray = NDArray[np.float64]
 TOLERANCE = 1e-7
 MAX_ITERATIONS = 4000
 CHECK_EVERY = 5
+CORRECTIONS = 8
 _STATUS = {
     int(osqp.SolverStatus.OSQP_SOLVED): SolveStatus.OK,
     int(osqp.SolverStatus.OSQP_MAX_ITER_REACHED): SolveStatus.MAX_ITERATIONS,
@@ -66,11 +67,11 @@ class OsqpBox:
         The result lies in the box up to the tolerance.  Nothing is raised: a
         problem that is not finite, or a solver in trouble, is ``FAILED``.
         """
+        if not math.isfinite(float(gradient.dot(gradient)) + lower + upper):
+            return Plan(gradient, SolveStatus.FAILED, 0)
         inputs = self._active_sets.solve(gradient, lower, upper)
         if inputs is not None:
             return Plan(inputs, SolveStatus.OK, 0)
-        if not math.isfinite(float(gradient @ gradient) + lower + upper):
-            return Plan(gradient, SolveStatus.FAILED, 0)
         if lower == upper:
             return Plan(np.full_like(gradient, lower), SolveStatus.OK, 0)
         return self._search(gradient, lower, upper)
@@ -92,10 +93,19 @@ class OsqpBox:
         info, inputs = self._solver.info, self._solver.solution.x
         status = _STATUS.get(info.status_val, SolveStatus.FAILED)
         if status is SolveStatus.OK:
-            self._active_sets.assume(self._found_sides(lower, upper))
-            exact = self._active_sets.solve(gradient, lower, upper)
+            exact = self._exact(gradient, lower, upper)
             inputs = inputs if exact is None else exact
         return Plan(inputs, status, info.iter)
+
+    def _exact(self, gradient: FloatArray, lower: float, upper: float) -> FloatArray | None:
+        """Solution by the active bounds OSQP has found; its tolerance may have confused a few."""
+        self._active_sets.assume(self._found_sides(lower, upper))
+        for _ in range(CORRECTIONS):
+            exact = self._active_sets.solve(gradient, lower, upper)
+            if exact is not None:
+                return exact
+            self._active_sets.correct()
+        return None
 
     def _found_sides(self, lower: float, upper: float) -> Sides:
         """A bound is active where its multiplier is larger than the distance to it."""

@@ -8,17 +8,23 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
+from msgspec.structs import replace
+
 from plant_emulator.scenario import Variant, load_scenario
 from tcs_hil.canbus.bus import choose_interface, open_bus
 from tcs_hil.control.settings import ControlSettings, PresetName
 from tcs_hil.hil.figures import Line, save_prediction_figure, save_slip_figure
 from tcs_hil.hil.metrics import SlipMetrics, Truth, slip_metrics
 from tcs_hil.hil.paper import MANOEUVRES
-from tcs_hil.hil.run import Mode, RunPlan, execute
+from tcs_hil.hil.processes import ProcessError
+from tcs_hil.hil.run import Mode, RunFiles
+from tcs_hil.hil.suite.case import Case
+from tcs_hil.hil.suite.result import Result
+from tcs_hil.hil.suite.runner import Bench, run_case
 from tcs_hil.model.evaluation import figure1
 from tcs_hil.model.predictor import KoopmanPredictor, default_model_path
 from tcs_hil.runtime.summary import Summary, summarise
-from tcs_hil.service.settings import BusSettings, ControllerName, ServiceConfig
+from tcs_hil.service.settings import ControllerName, ServiceConfig
 
 CONTROLLERS: tuple[ControllerName, ...] = ("off", "pi", "kmpc", "nmpc")
 MODES: tuple[Mode, ...] = ("lockstep", "real-time")
@@ -46,6 +52,7 @@ class Outcome:
     """One run and what came of it."""
 
     choice: Choice
+    result: Result
     truth: Truth
     slip: SlipMetrics
     timing: Summary
@@ -74,12 +81,11 @@ def run_demo(folder: Path, interface: str, channel: str | None, progress: Progre
         channel = f"vcan-demo-{os.getpid()}" if found == "embedded" else "vcan0"
     bus, description = open_bus(interface, channel)
     bus.shutdown()
-    choices, settings = list(_choices()), BusSettings(interface=interface, channel=channel)
-    outcomes = []
+    choices, outcomes = list(_choices()), []
     for done, choice in enumerate(choices):
-        words = (choice.manoeuvre, choice.car, choice.controller, choice.preset, choice.mode)
-        progress(done / len(choices), " ".join(words))
-        outcomes.append(_outcome(choice, settings, folder / "runs" / "-".join(words)))
+        case = _case(choice)
+        progress(done / len(choices), f"{case.name} {choice.mode}")
+        outcomes.append(_outcome(choice, case, Bench(choice.mode, folder, interface, channel)))
     return Demo(description, tuple(outcomes), _draw(folder, outcomes))
 
 
@@ -91,17 +97,27 @@ def _choices() -> Iterator[Choice]:
         yield Choice("manoeuvre-1", WHOLE_CAR, controller, preset, "lockstep")
 
 
-def _outcome(choice: Choice, bus: BusSettings, folder: Path) -> Outcome:
-    config = ServiceConfig(
-        controller=choice.controller, bus=bus, control=ControlSettings(preset=choice.preset)
-    )
+def _case(choice: Choice) -> Case:
+    """The demo shows what each law does, so only what always holds is judged."""
+    control = ControlSettings(preset=choice.preset)
+    config = ServiceConfig(controller=choice.controller, control=control)
     scenario = load_scenario(choice.manoeuvre).with_variant(choice.car)
-    files = execute(RunPlan(scenario, config, choice.mode, folder))
+    pace = "" if choice.mode == "lockstep" else f", {choice.mode}"
+    name = f"{choice.manoeuvre}, {choice.car}{pace}"
+    return Case("demo", name, replace(scenario, expect=()), config)
+
+
+def _outcome(choice: Choice, case: Case, bench: Bench) -> Outcome:
+    result = run_case(case, bench)
+    if result.error:
+        raise ProcessError(result.error)
+    files = RunFiles(bench.case_folder(case.name))
     truth = files.read_truth()
     return Outcome(
         choice=choice,
+        result=result,
         truth=truth,
-        slip=slip_metrics(truth, config.control.slip_reference, config.vehicle),
+        slip=slip_metrics(truth, case.config.control.slip_reference, case.config.vehicle),
         timing=summarise(files.read_flight()),
     )
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from cffi import FFI
 
 ROOM = Path("tcs_hil") / "native"  # relative, as setuptools wants its sources
-HEADERS = ("kmpc", "nmpc", "driveline")
+HEADERS = ("kmpc", "nmpc", "bank", "driveline")
 SOURCES = (
     "box_qp",
     "lifting",
@@ -19,6 +19,7 @@ SOURCES = (
     "sqp",
     "nmpc",
     "wheel_model",
+    "bank",
     "driveline",
     "driveline_model",
 )

@@ -72,3 +72,21 @@ void driveline_setup(driveline *law, int block_count, int max_iterations);
 void driveline_reset(driveline *law);
 void driveline_advance(driveline *law, double torque_nm, double duration_s);
 int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm, double urgency);
+
+typedef struct {
+    box_qp qp;
+    ...;
+} band;
+
+typedef struct {
+    int nx;
+    double a[...], x[...], plan[...];
+    double unit_nm, reduction_pull, change_pull;
+    ...;
+} bank;
+
+int band_setup(band *self, int nx, int n, const double *a, const double *b, const double *hessian,
+               const double *gradient_map);
+void bank_settle(bank *law, band *first, double weight, band *second, double other_weight);
+void bank_advance(bank *law, double torque_nm, double periods);
+int bank_plan(bank *law, double last_torque_nm, double torque_ref_nm);

@@ -180,24 +180,28 @@ def test_every_bad_frame_is_counted_by_its_kind(service, vehicle):
         (0x123, b""),
         (0x7FF, b""),
         (FRONT, front[:-1]),
+        (FRONT, front + b"0"),
         (FRONT, bytes(6)),
+        (FRONT, b"1" * 6),
         (FRONT, front),
         (FRONT, front),
         (FRONT, front),
         (TORQUE_LIMIT, bytes(6)),
+        (STATUS, b""),
     ]:
         assert not service.feed(frame_id, data, 0)
-    for tick in range(1, 13):
-        late = dict(vehicle.frames(SIGNALS, tick * 10 * MS))[FRONT]
-    assert not service.feed(FRONT, late, 0)
+    for first in (1, 13):
+        for tick in range(first, first + 12):
+            late = dict(vehicle.frames(SIGNALS, tick * 10 * MS))[FRONT]
+        assert not service.feed(FRONT, late, 0)
     assert service.counters == InboxCounters(
         good=1,
         unknown_id=2,
-        wrong_length=1,
-        e2e_error=1,
+        wrong_length=2,
+        e2e_error=2,
         repeated=3,
-        wrong_sequence=1,
-        own_id=1,
+        wrong_sequence=2,
+        own_id=2,
     )
 
 

@@ -79,6 +79,14 @@ def test_a_third_more_frames_than_cycles_is_no_second_sender():
     assert set(states(running_watch(), [[OK], [OK], [OK, OK]] * 60)) == {VALID}
 
 
+def test_frames_that_come_twice_for_ever_are_no_second_sender():
+    assert set(states(running_watch(), [[OK, REPEATED]] * 200)) == {VALID}
+
+
+def test_a_flood_of_repetitions_is_not_trusted():
+    assert states(running_watch(), [[OK] + [REPEATED] * 15] * 4)[-1] is INVALID
+
+
 def test_half_of_the_frames_lost_for_ever_are_bridged():
     assert set(states(running_watch(), [[OK], []] * 100)) == {VALID}
 

@@ -12,7 +12,8 @@ from scipy.optimize import lsq_linear
 
 from tcs_hil.control.bank_kmpc import BankOptimiser
 from tcs_hil.control.bank_law import bank_mpc
-from tcs_hil.control.bank_problem import INTEGRAL, band_problems
+from tcs_hil.control.bank_osqp import BandProblem
+from tcs_hil.control.bank_problem import INTEGRAL, bands_of
 from tcs_hil.control.protocol import Controller, SolveStatus
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
@@ -35,7 +36,7 @@ def law() -> Controller:
 def reference_plan(band: int, x: np.ndarray, last_nm: float, torque_ref_nm: float) -> np.ndarray:
     """Optimal torques (N,) in Nm by rolling the band out; no condensing, no Hessian."""
     tuning = SETTINGS.default.kmpc
-    system = band_problems(BANK, SETTINGS)[0][band]
+    system = bands_of(BANK, SETTINGS)[band].system
     centre_mps = BANK.centre_mps[band]
     soft = min(1.0, centre_mps / tuning.soft_speed_mps)
     slow = min(1.0, tuning.integral_speed_mps / centre_mps)
@@ -59,13 +60,13 @@ def reference_plan(band: int, x: np.ndarray, last_nm: float, torque_ref_nm: floa
 
 @pytest.mark.parametrize("band", [0, 4, 9])
 def test_the_plan_of_a_band_is_the_exact_minimiser(band: int) -> None:
-    _, problems = band_problems(BANK, SETTINGS)
+    problem = BandProblem(bands_of(BANK, SETTINGS)[band].cost)
     optimiser = BankOptimiser(SETTINGS, BANK)
     rng = np.random.default_rng(11)
     for _ in range(20):
         speed_mps, kappa = BANK.centre_mps[band], rng.uniform(0.0, 0.3)
         x = optimiser.state(wheel_at(speed_mps, kappa, 120.0), rng.uniform(-0.01, 0.01))
-        plan = problems[band].solve(x, 120.0, 200.0)
+        plan = problem.solve(x, 120.0, 200.0)
         assert plan.status is SolveStatus.OK
         expected = reference_plan(band, x, 120.0, 200.0)
         assert np.abs(plan.inputs - expected).max() < AGREEMENT_NM

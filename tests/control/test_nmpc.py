@@ -54,6 +54,10 @@ def _period(x: Any, torque: Any) -> Any:
 
 @pytest.fixture(scope="module")
 def ipopt() -> Solve:
+    return ipopt_reference(1e-8)
+
+
+def ipopt_reference(tolerance: float) -> Solve:
     """Multiple shooting, exact Hessian, run to convergence from a start of its own."""
     x, u = ca.SX.sym("x", 3), ca.SX.sym("u")
     flow = ca.Function("flow", [x, u], [_period(x, u)])
@@ -72,7 +76,7 @@ def ipopt() -> Solve:
         "f": cost / W_U,  # in Nm², so that IPOPT's absolute tolerance means something
         "g": ca.vertcat(*gaps),
     }
-    quiet = {"print_level": 0, "sb": "yes", "tol": 1e-8, "bound_relax_factor": 0.0}
+    quiet = {"print_level": 0, "sb": "yes", "tol": tolerance, "bound_relax_factor": 0.0}
     solver = ca.nlpsol("reference", "ipopt", problem, {"ipopt": quiet, "print_time": False})
 
     def solve(x0: tuple[float, float, float], torque_ref_nm: float) -> np.ndarray:

@@ -91,7 +91,8 @@ def test_a_gradient_that_is_not_finite_fails_and_leaves_the_solver_usable() -> N
     hessian = random_hessian(np.random.default_rng(3), 12.0)
     gradient = np.full(N, 1e-3)
     qp = OsqpBox(hessian)
-    assert qp.solve(gradient * np.nan, -3.0, 4.0).status is SolveStatus.FAILED
+    for bad in (np.nan, np.inf):
+        assert qp.solve(gradient * bad, -3.0, 4.0).status is SolveStatus.FAILED
     plan = qp.solve(gradient, -3.0, 4.0)
     assert plan.status is SolveStatus.OK
     np.testing.assert_allclose(plan.inputs, exact(hessian, gradient, -3.0, 4.0), atol=1e-5)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import itertools
 import os
+import shutil
 import struct
 import tempfile
 from collections.abc import Callable
@@ -33,9 +35,11 @@ EDIT = struct.Struct("<HBB")  # where, how much goes, how much comes
 
 _MEMORY = "/dev/shm"  # noqa: S108 - a file a millisecond is too much for a disk
 _SCRATCH = Path(tempfile.mkdtemp(prefix="fuzz-", dir=_MEMORY if Path(_MEMORY).is_dir() else None))
+atexit.register(shutil.rmtree, _SCRATCH)
 
 
-def _read(content: bytes, read: Callable[[Path], object], suffix: str = "") -> None:
+def through_file(content: bytes, read: Callable[[Path], object], suffix: str = "") -> None:
+    """Let ``read`` read a file that holds ``content``; our own errors are good answers."""
     path = _SCRATCH / f"{os.getpid()}{suffix}"
     path.write_bytes(content)
     with contextlib.suppress(TcsError):
@@ -51,27 +55,27 @@ def dbc(data: bytes) -> None:
         inserted = rest[EDIT.size : EDIT.size + come].decode("latin-1")
         text = text[:at] + inserted + text[at + gone :]
         rest = rest[EDIT.size + come :]
-    _read(text.encode(DBC_ENCODING, "replace"), load_database)
+    through_file(text.encode(DBC_ENCODING, "replace"), load_database)
 
 
 def config(data: bytes) -> None:
     """The service's configuration."""
-    _read(data, lambda path: read_toml(path, ServiceConfig))
+    through_file(data, lambda path: read_toml(path, ServiceConfig))
 
 
 def scenario(data: bytes) -> None:
     """A scenario, without the files it may name."""
-    _read(data, lambda path: read_toml(path, Scenario))
+    through_file(data, lambda path: read_toml(path, Scenario))
 
 
 def road(data: bytes) -> None:
     """A road from a CSV file."""
-    _read(data, read_road)
+    through_file(data, read_road)
 
 
 def tyre(data: bytes) -> None:
     """A tyre property file."""
-    _read(data, read_tir)
+    through_file(data, read_tir)
 
 
 def model(data: bytes) -> None:
@@ -103,11 +107,11 @@ def _forge(path: Path, good: Path, data: bytes) -> None:
 
 def flight_recording(data: bytes) -> None:
     """A flight recording."""
-    _read(data, recording.read)
-    _read(data, recording.read_info)
+    through_file(data, recording.read)
+    through_file(data, recording.read_info)
 
 
 def bus_log(data: bytes) -> None:
     """A log of the bus in any format."""
     suffix = LOG_SUFFIXES[data[0] % len(LOG_SUFFIXES)] if data else LOG_SUFFIXES[0]
-    _read(data[1:], lambda path: list(itertools.islice(read_log(path), LONGEST_LOG)), suffix)
+    through_file(data[1:], lambda path: list(itertools.islice(read_log(path), LONGEST_LOG)), suffix)

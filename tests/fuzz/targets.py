@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from . import file_targets, frame_targets
+from . import file_targets, frame_targets, map_targets
 
 Target = Callable[[bytes], None]
 
 TARGETS: dict[str, Target] = {
     "frames": frame_targets.frames,
     "codec": frame_targets.codec,
+    "mapped_frames": map_targets.mapped_frames,
+    "signal_map": map_targets.signal_map,
     "dbc": file_targets.dbc,
     "config": file_targets.config,
     "scenario": file_targets.scenario,

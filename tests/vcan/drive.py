@@ -24,7 +24,7 @@ from tcs_hil.signals import BusCondition, TcsState
 
 from .conftest import CHANNEL
 
-PATIENCE_S = 120.0
+PATIENCE_S = 10.0  # of simulated time
 POLL_S = 0.05
 PERIOD_S = 0.002
 RELEASE_NMPS = 500.0
@@ -48,6 +48,7 @@ class Process:
 
     def __init__(self, *arguments: str, log: Path) -> None:
         self.log = log
+        self.killed = False
         with log.open("ab") as output:
             self._child = subprocess.Popen(
                 [sys.executable, "-m", *arguments], stdout=output, stderr=output
@@ -65,8 +66,13 @@ class Process:
         os.kill(self.pid, number)
 
     def kill(self) -> None:
+        self.killed = True
         self._child.kill()
         self._child.wait()
+
+    def end(self) -> None:
+        self.send(signal.SIGTERM)
+        self._child.wait(PATIENCE_S)
 
     @contextmanager
     def stopped(self) -> Iterator[None]:
@@ -90,6 +96,7 @@ class Drive:
         (folder / "service.toml").write_text("[recorder]\nticks = 100_000\n[tick]\nphase_us = 500")
 
     def start_service(self) -> Process:
+        self.flight.unlink(missing_ok=True)  # what is read from now on is the new service's
         return self._start(
             *("tcs_hil", "run", "--config", str(self._folder / "service.toml")),
             *("--controller", self._controller, "--flight-recording", str(self.flight)),
@@ -111,9 +118,8 @@ class Drive:
     def await_ticks(self, enough: Callable[[Ticks], bool], what: str) -> Ticks:
         deadline_s = time.monotonic() + PATIENCE_S
         while not enough(ticks := self.ticks()):
-            logs = "\n".join(process.log.read_text() for process in self._started)
-            assert all(process.running for process in self._started[-2:]), logs
-            assert time.monotonic() < deadline_s, f"{what} did not come\n{logs}"
+            assert all(process.running or process.killed for process in self._started), self._logs()
+            assert time.monotonic() < deadline_s, f"{what} did not come\n{self._logs()}"
             time.sleep(POLL_S)
         return ticks
 
@@ -139,8 +145,7 @@ class Drive:
         """Stop both and return the newest emulator's truth."""
         for process in self._started:
             if process.running:
-                process.send(signal.SIGTERM)
-                process._child.wait(PATIENCE_S)
+                process.end()
         with np.load(self.truth) as recording:
             rows: Truth = recording["truth"]
         return rows
@@ -150,6 +155,9 @@ class Drive:
             if process.running:
                 process.send(signal.SIGCONT)
                 process.kill()
+
+    def _logs(self) -> str:
+        return "\n".join(process.log.read_text() for process in self._started)
 
     def _start(self, *arguments: str) -> Process:
         log = self._folder / f"{arguments[0]}.log"

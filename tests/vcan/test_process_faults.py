@@ -1,7 +1,8 @@
 """Either side killed, stopped, starved or moved in time, in the middle of a manoeuvre.
 
 The driver gets his torque back at a bounded rate, never none of it, and control
-returns.  What asserts exact times runs in simulated time only.
+returns.  In simulated time, where a machine that is busy cannot be mistaken for
+the fault; `test_processes.py` has what must hold on a busy one.
 """
 
 from __future__ import annotations
@@ -30,6 +31,9 @@ A_ROW_NM = RELEASE_NMPS * PERIOD_S
 ROUNDING_NM = 0.1
 
 
+pytestmark = pytest.mark.simulated_time
+
+
 @pytest.fixture
 def drive(tmp_path: Path) -> Iterator[Drive]:
     drive = Drive(tmp_path, "pi")
@@ -48,7 +52,6 @@ def assert_handed_back_gently(truth: Truth, begin_s: float, end_s: float) -> Non
     assert demand_nm(silent)[0] > 0.0
 
 
-@pytest.mark.simulated_time
 def test_a_killed_service_gives_the_torque_back_gently_and_its_successor_takes_over(
     drive: Drive,
 ) -> None:
@@ -72,18 +75,6 @@ def test_a_killed_service_gives_the_torque_back_gently_and_its_successor_takes_o
     assert not np.isin(states, [TcsState.FAULT, TcsState.OFF]).any()
 
 
-def test_a_service_killed_in_a_manoeuvre_can_be_started_again_at_once(drive: Drive) -> None:
-    service = drive.start_service()
-    drive.start_emulator()
-    drive.await_active()
-    service.kill()
-    drive.flight.unlink()  # what comes next is the successor's
-    drive.start_service()
-    drive.await_active()
-    truth = drive.finish()
-    assert np.all(demand_nm(rows_since(truth, 0.6)) >= 0.0)
-
-
 def test_a_killed_emulator_is_missed_at_once_and_its_successor_welcome(drive: Drive) -> None:
     service = drive.start_service()
     emulator = drive.start_emulator()
@@ -95,32 +86,12 @@ def test_a_killed_emulator_is_missed_at_once_and_its_successor_welcome(drive: Dr
     assert service.running
     # Once in FAULT, the way back is through good frames, and no limit is left from before.
     first_fault = int(np.argmax(ticks["state"] == TcsState.FAULT))
-    assert ticks["rear_speed_age_s"][first_fault] > 10 * PERIOD_S
+    assert 10 * PERIOD_S < ticks["rear_speed_age_s"][first_fault] <= 12 * PERIOD_S
     assert not ticks["failed"].any()
 
 
 @pytest.mark.parametrize("stop_s", [0.05, 0.5, 2.0])
-def test_a_service_that_was_stopped_skips_the_ticks_it_missed_and_controls_again(
-    drive: Drive, stop_s: float
-) -> None:
-    service = drive.start_service()
-    drive.start_emulator()
-    drive.await_active()
-    with service.stopped():
-        number = int(drive.ticks()["number"][-1])
-        time.sleep(stop_s)
-    ticks = drive.await_active(after=number + round(stop_s / PERIOD_S))
-    drive.finish()
-    gap = int(np.argmax(ticks["number"] > number + 1))
-    assert ticks["skipped"][gap] >= stop_s / PERIOD_S - 2
-    # The queue is older than the tick that reads it, and says so.
-    assert ticks["rear_speed_age_s"][gap] > 10 * PERIOD_S or stop_s < 1.0
-    assert not ticks["failed"].any()
-
-
-@pytest.mark.simulated_time
-@pytest.mark.parametrize("stop_s", [0.05, 0.5, 2.0])
-def test_while_a_service_is_stopped_the_torque_is_handed_back_gently(
+def test_a_service_that_was_stopped_skips_what_it_missed_and_controls_again(
     drive: Drive, stop_s: float
 ) -> None:
     service = drive.start_service()
@@ -130,10 +101,13 @@ def test_while_a_service_is_stopped_the_torque_is_handed_back_gently(
         before = drive.ticks()
         time.sleep(stop_s)
         end_ns = time.monotonic_ns()
-    drive.await_active(after=int(before["number"][-1]) + round(stop_s / PERIOD_S))
-    truth = drive.finish()
+    number = int(before["number"][-1])
+    ticks = drive.await_active(after=number + round(stop_s / PERIOD_S))
     silent_from_s = plant_time_s(before, int(before["sent_ns"][-1])) + BUS_S
-    assert_handed_back_gently(truth, silent_from_s, plant_time_s(before, end_ns))
+    assert_handed_back_gently(drive.finish(), silent_from_s, plant_time_s(before, end_ns))
+    (late,) = ticks[ticks["skipped"] > 0]
+    assert late["skipped"] == pytest.approx(stop_s / PERIOD_S, abs=2)
+    assert not ticks["failed"].any()
 
 
 def test_an_emulator_that_was_stopped_finds_control_again(drive: Drive) -> None:
@@ -161,23 +135,6 @@ def wall_clock_moved(step_s: float) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("step_s", [-3600.0, 3600.0])
-def test_a_step_of_the_wall_clock_ages_no_input(drive: Drive, step_s: float) -> None:
-    drive.start_service()
-    drive.start_emulator()
-    number = int(drive.await_active()["number"][-1])
-    with wall_clock_moved(step_s):
-        drive.await_active(after=number)
-    ticks = drive.await_active(after=int(drive.ticks()["number"][-1]))
-    drive.finish()
-    since = ticks[ticks["number"] >= number]
-    # What a crowded machine does to the ages is seconds at most, and not an hour.
-    assert since["rear_speed_age_s"].max() < 60.0
-    assert since["rear_speed_age_s"].min() >= 0.0
-    assert np.median(since["rear_speed_age_s"]) < 2 * PERIOD_S
-
-
-@pytest.mark.simulated_time
-@pytest.mark.parametrize("step_s", [-3600.0, 3600.0])
 def test_a_step_of_the_wall_clock_is_not_even_noticed(drive: Drive, step_s: float) -> None:
     drive.start_service()
     drive.start_emulator()
@@ -189,23 +146,6 @@ def test_a_step_of_the_wall_clock_is_not_even_noticed(drive: Drive, step_s: floa
     assert since["rear_speed_age_s"].max() <= 2 * PERIOD_S
     assert np.all(since["state"] == TcsState.ACTIVE)
     assert not since["skipped"].any()
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="of Linux")
-def test_processes_that_want_the_whole_machine_do_not_end_it(drive: Drive) -> None:
-    service = drive.start_service()
-    drive.start_emulator()
-    number = int(drive.await_active()["number"][-1])
-    hogs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(3)]
-    try:
-        drive.await_ticks(lambda t: bool(t["number"][-1] > number + 500), "another second")
-    finally:
-        for hog in hogs:
-            hog.kill()
-            hog.wait()
-    drive.await_active(after=number + 500)
-    assert service.running
-    assert not drive.ticks()["failed"].any()
 
 
 def test_a_tick_needs_no_memory_that_it_does_not_have(drive: Drive) -> None:

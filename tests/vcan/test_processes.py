@@ -1,7 +1,9 @@
 """Daemon and emulator as processes on a real vcan0, with strangers on the bus."""
 
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import can
@@ -33,8 +35,11 @@ def paper_plan(controller: ControllerName, mode: Mode, folder: Path) -> RunPlan:
 
 @contextmanager
 def daemon(tmp_path: Path, *options: str) -> Iterator[Program]:
-    arguments = ("tcs_hil", "run", "--channel", CHANNEL, "--controller", "pi", *options)
-    with program(*arguments, log=tmp_path / "service.log") as child:
+    # Small: a User-Mode-Linux guest can only lock so many pages before its host says no.
+    config = tmp_path / "service.toml"
+    config.write_text("[recorder]\nticks = 5_000\n")
+    arguments = ("tcs_hil", "run", "--config", str(config), "--channel", CHANNEL)
+    with program(*arguments, "--controller", "pi", *options, log=tmp_path / "service.log") as child:
         yield child
 
 
@@ -105,5 +110,23 @@ def test_it_finds_its_interface_again_after_it_was_removed(
         vcan0.add()
         bus, _ = open_bus("socketcan", CHANNEL)
         with bus:
+            next_limit(bus)
+        assert child.running
+
+
+@contextmanager
+def hogs(count: int) -> Iterator[None]:
+    """A context in which processes compute and compute."""
+    with ExitStack() as stack:
+        for _ in range(count):
+            hog = stack.enter_context(subprocess.Popen([sys.executable, "-c", "while True: pass"]))
+            stack.callback(hog.kill)
+        yield
+
+
+def test_processes_that_want_the_whole_machine_do_not_silence_it(tmp_path: Path) -> None:
+    bus, _ = open_bus("socketcan", CHANNEL)
+    with bus, daemon(tmp_path) as child, hogs(4):
+        for _ in range(100):
             next_limit(bus)
         assert child.running

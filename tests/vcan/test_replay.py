@@ -12,7 +12,7 @@ from tcs_hil.hil.processes import program
 from tcs_hil.hil.replay.recorded import Grid
 from tcs_hil.hil.replay.session import Verdict, recorded_config, replay_live
 from tcs_hil.hil.replay.story import tell
-from tcs_hil.hil.run import RunPlan, execute
+from tcs_hil.hil.run import SERVICE_PHASE_US, RunPlan, execute
 from tcs_hil.service.settings import BusSettings, ServiceConfig
 
 from .conftest import CHANNEL
@@ -24,7 +24,8 @@ def answered(sources: Sources, tmp_path: Path, *options: str) -> Verdict:
     """What a fresh service says to a recording, beside what the recorded one had said."""
     config = recorded_config(sources)
     on_vcan0 = replace(config, bus=BusSettings(interface="socketcan", channel=CHANNEL))
-    service = ("tcs_hil", "run", "--config", str(sources.config), "--channel", CHANNEL, *options)
+    law = ("--controller", "pi", "--preset", "paper")
+    service = ("tcs_hil", "run", *law, "--channel", CHANNEL, *options)
     with program(*service, log=tmp_path / "answering.log"):
         return replay_live(sources, on_vcan0, 0.0)
 
@@ -44,7 +45,7 @@ def test_in_real_time_a_service_gives_the_recorded_answers(tmp_path: Path) -> No
     scenario = replace(load_scenario("manoeuvre-1"), duration_s=0.5)
     config = ServiceConfig(controller="pi", control=ControlSettings(preset="paper"))
     files = execute(RunPlan(scenario, config, "real-time", tmp_path / "run"))
-    verdict = answered(find_sources([files.folder]), tmp_path)
+    verdict = answered(find_sources([files.folder]), tmp_path, "--phase-us", str(SERVICE_PHASE_US))
     assert verdict.grid is Grid.FLIGHT
     assert verdict.comparison.ticks > 240
     assert verdict.comparison.same, story(verdict)

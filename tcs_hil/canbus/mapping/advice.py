@@ -23,7 +23,9 @@ COARSE_SLIP_RATIO = 0.01
 """Steps of the slip beyond this are felt by a law that holds a tenth."""
 CRAWL_MPS = 2.0
 """Below this speed every wheel sensor is coarse."""
-_PROTECTING = re.compile(r"crc|chk|chks|check_?sum|_cs$|alive|count|cnt|_bz$", re.IGNORECASE)
+COUNTING = re.compile(r"alive|count|cnt|sqc|_bz$", re.IGNORECASE)
+CHECKING = re.compile(r"crc|chk|chks|check_?sum|_cs$", re.IGNORECASE)
+"""How counters and checksums are called."""
 
 
 def look_over(
@@ -104,7 +106,8 @@ def _check_protection(
         key = f"messages.{message.name}"
         named = _named(settings.messages.get(message.name, MessageSettings()))
         signals = find_message(dbc, message.name, key).signals
-        unused = [s.name for s in signals if _PROTECTING.search(s.name) and s.name not in named]
+        suspects = (s.name for s in signals if COUNTING.search(s.name) or CHECKING.search(s.name))
+        unused = [name for name in suspects if name not in named]
         if unused and not isinstance(message.protection, Profile1 | Profile2):
             findings.warn(
                 key,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 from tcs_hil.canbus.codec import SignalSpec
 from tcs_hil.canbus.e2e import E2EStatus
@@ -25,13 +25,10 @@ class Counter:
             count >>= part.length
         return values
 
-    def join(self, values: Sequence[float]) -> int:
-        """Count that these raw values of the parts make up."""
-        count, shift = 0, 0
-        for part, value in zip(self.parts, values, strict=True):
-            count |= int(value) << shift
-            shift += part.length
-        return count
+    def weights(self) -> tuple[int, ...]:
+        """What one step of each part counts."""
+        shifts = accumulate((part.length for part in self.parts[:-1]), initial=0)
+        return tuple(1 << shift for shift in shifts)
 
 
 class Succession:

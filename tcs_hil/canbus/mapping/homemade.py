@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import mul
 
 from tcs_hil.canbus.codec import compile_codec
 from tcs_hil.canbus.e2e import E2EStatus
@@ -35,6 +36,7 @@ class HomemadeChecker:
         self._counter = spec.counter
         if spec.counter is not None:
             self._decode = compile_codec("counter", spec.length, spec.counter.parts).decode
+            self._weights = spec.counter.weights()
             self._succession = Succession(spec.counter.highest, spec.counter.max_step)
 
     def check(self, payload: bytes) -> E2EStatus:
@@ -43,7 +45,8 @@ class HomemadeChecker:
             return E2EStatus.ERROR
         if self._counter is None:
             return E2EStatus.OK
-        return self._succession.judge(self._counter.join(self._decode(payload)))
+        count = sum(map(mul, self._weights, self._decode(payload)))
+        return self._succession.judge(int(count))
 
 
 class HomemadeProtector:

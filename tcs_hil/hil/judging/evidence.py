@@ -24,6 +24,9 @@ from tcs_hil.service.settings import ServiceConfig
 
 FloatArray = NDArray[np.float64]
 
+CLOCKS_AGREE_S = 0.01
+"""In real time the clocks of plant, service and bus are aligned by frames, to a few ms."""
+
 S_PER_NS = 1e-9
 US_PER_NS = 1e-3
 
@@ -71,6 +74,11 @@ class Evidence:
         return float(self.truth["time_s"][-1])
 
     @property
+    def heard_until_s(self) -> float:
+        """Up to when service and bus are judged: silence after the plant's end is no fault."""
+        return self.end_s - CLOCKS_AGREE_S if self.clocked else self.end_s
+
+    @property
     def tick_time_s(self) -> FloatArray:
         """When each tick decided, (n,)."""
         if not self.clocked:  # the bench's time is the plant's: no need to read the bus for it
@@ -80,7 +88,8 @@ class Evidence:
     def series(self, channel: Channel) -> Series:
         """Samples of one channel, from the plant's start to its end."""
         read = {"truth": self._of_truth, "service": self._of_service, "bus": self._of_bus}
-        return read[channel.source](channel.name).between(0.0, self.end_s)
+        end_s = self.end_s if channel.source == "truth" else self.heard_until_s
+        return read[channel.source](channel.name).between(0.0, end_s)
 
     @cached_property
     def _frames(self) -> list[can.Message]:

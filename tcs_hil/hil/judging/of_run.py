@@ -64,7 +64,7 @@ def stretch(evidence: Evidence, from_s: float, to_s: float) -> Stretch:
     """
     truth, tick_time_s = evidence.truth, evidence.tick_time_s
     truth = truth[(truth["time_s"] >= from_s) & (truth["time_s"] <= to_s)]
-    inside = (tick_time_s >= from_s) & (tick_time_s <= min(to_s, evidence.end_s))
+    inside = (tick_time_s >= from_s) & (tick_time_s <= min(to_s, evidence.heard_until_s))
     if not len(truth) or not inside.any():
         raise CannotJudgeError(f"the run ended at {evidence.end_s:.3f} s, before the window")
     return Stretch(evidence, truth, evidence.ticks[inside], tick_time_s[inside])

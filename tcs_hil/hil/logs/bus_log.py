@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import struct
 from collections.abc import Iterator
 from pathlib import Path
 
 import can
-from can.io.blf import BLFParseError
 
 from tcs_hil.errors import ConfigError
 
 NS_PER_S = 1_000_000_000
-
-UNREADABLE: tuple[type[Exception], ...]
-UNREADABLE = (ValueError, NotImplementedError, can.CanError, BLFParseError, struct.error)
-"""What python-can raises for a file of an unknown or damaged format."""
-with contextlib.suppress(ImportError):  # without it python-can reads no MF4
-    from asammdf.blocks.utils import MdfException
-
-    UNREADABLE = (*UNREADABLE, MdfException)
 
 
 def read_log(path: Path) -> Iterator[can.Message]:
@@ -41,7 +30,7 @@ def read_log(path: Path) -> Iterator[can.Message]:
                     yield message
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read ({error.strerror or error})") from error
-    except UNREADABLE as error:
+    except Exception as error:  # python-can's readers raise whatever the damage leads to
         raise ConfigError(f"{path}: no recording python-can can read here ({error})") from error
 
 

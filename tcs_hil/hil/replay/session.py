@@ -7,6 +7,7 @@ from itertools import dropwhile
 from pathlib import Path
 from typing import NamedTuple
 
+from plant_emulator.undisturbed import undisturbed
 from tcs_hil.canbus.database import Database, load_database
 from tcs_hil.canbus.port import open_port
 from tcs_hil.config import read_toml
@@ -73,7 +74,8 @@ def replay_live(sources: Sources, config: ServiceConfig, tolerance_nm: float) ->
         if grid is Grid.BENCH:
             answers = replay_in_lockstep(ticks, port, clock, database)
         else:
-            answers = replay_in_real_time(ticks, port, clock, database, _period_ns(config))
+            with undisturbed():
+                answers = replay_in_real_time(ticks, port, clock, database, _period_ns(config))
     return Verdict(ticks, grid, database, compare(ticks, answers, database, signals, tolerance_nm))
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import base64
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import msgspec
@@ -11,21 +14,26 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from tcs_hil.errors import ConfigError
+from tcs_hil.hil.judging.of_run import RUN_METRICS
 from tcs_hil.hil.judging.verdict import Verdict
 from tcs_hil.hil.report import picture
-from tcs_hil.hil.suite.result import Result, SuiteResult
-from tcs_hil.hil.suite.runner import CLOCKED_FIGURES, FIGURES
+from tcs_hil.hil.suite.result import CLOCKED_FIGURES, FIGURES, Result, SuiteResult
 
 ASSETS = files(__package__) / "assets"
 FILE = "index.html"
+NO_FIGURES: Mapping[str, Path] = MappingProxyType({})
 
 
 def write_report(
-    folder: Path, suite: SuiteResult, baseline: tuple[Path, SuiteResult] | None = None
+    folder: Path,
+    suite: SuiteResult,
+    baseline: tuple[Path, SuiteResult] | None = None,
+    figures: Mapping[str, Path] = NO_FIGURES,
 ) -> Path:
     """Write the page of a suite whose runs are in ``folder``; returns its path.
 
-    ``baseline`` is the folder and the results of an earlier run to stand beside.
+    ``baseline`` is the folder and the results of an earlier run to stand beside;
+    ``figures`` are PNG files by title, shown above the cases.
 
     Raises:
         ConfigError: the page cannot be written.
@@ -38,8 +46,9 @@ def write_report(
     page = environment.get_template("report.html.j2").render(
         suite=suite,
         counts={verdict: suite.count(verdict) for verdict in Verdict},
-        figures=_figures(suite),
-        rows=[(result, before.get(result.name)) for result in suite.results],
+        columns=_columns(suite),
+        figures={title: _inline(image) for title, image in figures.items()},
+        rows=[(result, before.get(result.name)) for result in _worst_first(suite)],
         baseline=None if baseline is None else baseline[1],
         pictures=_pictures(folder, suite),
         earlier={} if baseline is None else _pictures(baseline[0], suite),
@@ -54,14 +63,26 @@ def write_report(
     return path
 
 
-def _figures(suite: SuiteResult) -> list[str]:
-    """Columns of the table: those of a clock only where one was there."""
+def _worst_first(suite: SuiteResult) -> list[Result]:
+    order = (Verdict.FAILED, Verdict.BLOCKED, Verdict.PASSED)
+    return sorted(suite.results, key=lambda result: order.index(result.verdict))
+
+
+def _columns(suite: SuiteResult) -> dict[str, str]:
+    """Metrics in the table, with their units: those of a clock only where one was there."""
     clocked = any(result.mode == "real-time" for result in suite.results)
-    return [*FIGURES, *(CLOCKED_FIGURES if clocked else ())]
+    names = (*FIGURES, *(CLOCKED_FIGURES if clocked else ()))
+    return {name: RUN_METRICS[name].unit for name in names}
+
+
+def _inline(image: Path) -> str:
+    return base64.b64encode(image.read_bytes()).decode()
 
 
 def _figure(value: float) -> str:
-    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+    if abs(value) >= 10.0 or value.is_integer():
+        return f"{value:.0f}"
+    return f"{value:.3f}" if abs(value) >= 0.1 else f"{value:.4f}"
 
 
 def _change(value: float) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tcs_hil.hil.judging.channels import namespace
 from tcs_hil.hil.judging.evidence import Evidence, Series
+from tcs_hil.hil.judging.of_run import stretch
 from tcs_hil.hil.report.pack import Packed, pack
 from tcs_hil.runtime.times import times_us
 from tcs_hil.runtime.worst import worst_ticks
@@ -137,16 +138,17 @@ def _lines(evidence: Evidence) -> Iterator[Line]:
 
 
 def _worst(evidence: Evidence) -> Iterator[dict[str, Any]]:
-    """The slowest ticks, at the time of the plant."""
-    at_s = dict(zip(evidence.ticks["number"].tolist(), evidence.tick_time_s.tolist(), strict=True))
-    for tick in worst_ticks(evidence.ticks, WORST):
+    """The slowest ticks of the run, at the time of the plant."""
+    run = stretch(evidence, 0.0, np.inf)
+    at_s = dict(zip(run.ticks["number"].tolist(), run.tick_time_s.tolist(), strict=True))
+    for tick in worst_ticks(run.ticks, WORST):
         yield tick.as_dict() | {"at_s": at_s[tick.number]}
 
 
 def _histogram(evidence: Evidence) -> Histogram | None:
     """Latency where a clock set the pace, else what a control law took."""
     name, what = ("latency", "latency") if evidence.clocked else ("solve", "control law, per wheel")
-    samples_us = times_us(evidence.ticks)[name]
+    samples_us = times_us(stretch(evidence, 0.0, np.inf).ticks)[name]
     if not samples_us.size:
         return None
     counts, edges = np.histogram(samples_us, BINS)

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from plant_emulator.scenario import Scenario, load_scenario
+from plant_emulator.scenario import Scenario, Variant, load_scenario
 from tcs_hil.config import read_toml
 from tcs_hil.service.settings import ServiceConfig
 
@@ -52,9 +52,13 @@ class Success(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Everything about a study; ``scenario`` is a shipped one or a file beside the study's."""
+    """Everything about a study; ``scenario`` is a shipped one or a file beside the study's.
+
+    ``vehicle`` drives it with this car instead of its own.
+    """
 
     scenario: str
+    vehicle: Variant | None = None
     vary: Annotated[tuple[Axis, ...], Meta(min_length=1, max_length=50)]
     description: str = ""
     design: Design = "latin-hypercube"
@@ -90,4 +94,6 @@ def read_plan(path: Path) -> Plan:
     study = read_toml(path, Study)
     beside = path.parent / study.scenario
     scenario = load_scenario(beside if beside.is_file() else study.scenario)
+    if study.vehicle is not None:
+        scenario = scenario.with_variant(study.vehicle)
     return Plan(study, scenario.resolved())

@@ -16,6 +16,11 @@ from tcs_hil.hil.study.plan import Plan, Success, Value
 from tcs_hil.service.settings import ServiceConfig
 
 SERVICE = "service"
+UNKNOWN_TO_QUARTER_CAR = (
+    *("vehicle.body.", "vehicle.tyre.", "vehicle.driveline."),
+    *("sensors.", "bus."),
+)
+"""A quarter car has none of these: to vary them would show a space without any difference."""
 
 Row = dict[str, Any]
 
@@ -24,10 +29,12 @@ def job(plan: Plan, point: Point, index: int) -> Job:
     """The run that a point stands for.
 
     Raises:
-        ConfigError: a key does not exist, or takes no such value.
+        ConfigError: a key does not exist, takes no such value or has no effect.
     """
     scenario, service = _plain(plan.scenario), _plain(plan.study.service)
     for axis, value in zip(plan.study.vary, point, strict=True):
+        if scenario["vehicle"]["variant"] == "quarter-car":
+            _refuse_on_quarter_car(axis.key)
         root, _, rest = axis.key.partition(".")
         table, key = (service, rest) if root == SERVICE else (scenario, axis.key)
         _put(table, key, value, axis.key)
@@ -76,6 +83,11 @@ def _succeeds(score: Score, success: Success) -> bool:
         success.gain_ratio is not None and score.gain_ratio < success.gain_ratio,
     )
     return not any(broken)
+
+
+def _refuse_on_quarter_car(key: str) -> None:
+    if key.startswith(UNKNOWN_TO_QUARTER_CAR):
+        raise ConfigError(f'`{key}` is nothing to the quarter car: set vehicle = "vehicle"')
 
 
 def _plain(struct: msgspec.Struct) -> Any:

@@ -11,6 +11,10 @@ from tcs_hil.hil.judging.verdict import Finding, Verdict, overall
 
 FILE = "results.json"
 
+FIGURES = ("slip RMSE", "peak slip", "speed gained ratio", "mean |dT/dt|", "limit cycles")
+CLOCKED_FIGURES = ("latency p99", "latency max", "overruns")
+"""Metrics every run is told by, whatever its scenario limits; those of a clock in real time."""
+
 
 class Result(msgspec.Struct, frozen=True, kw_only=True):
     """One case.

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
+from multiprocessing import active_children
 from pathlib import Path
 
 import numpy as np
@@ -21,11 +22,8 @@ from tcs_hil.hil.processes import fork_server
 from tcs_hil.hil.report import picture
 from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.hil.suite.case import Case
-from tcs_hil.hil.suite.result import Result
+from tcs_hil.hil.suite.result import CLOCKED_FIGURES, FIGURES, Result
 from tcs_hil.service.settings import BusSettings
-
-FIGURES = ("slip RMSE", "peak slip", "speed gained ratio", "mean |dT/dt|", "limit cycles")
-CLOCKED_FIGURES = ("latency p50", "latency p99", "latency max", "overruns")
 
 Progress = Callable[[float, str], None]
 
@@ -79,6 +77,10 @@ def run_cases(cases: Sequence[Case], bench: Bench, jobs: int, progress: Progress
             result = task.result()
             progress(done / len(tasks), f"{result.name} {result.verdict}")
         return [task.result() for task in tasks]
+    except KeyboardInterrupt:
+        for worker in active_children():  # their programs end with them
+            worker.terminate()
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 

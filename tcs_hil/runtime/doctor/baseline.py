@@ -21,10 +21,12 @@ _MEND = "SCHED_FIFO (see above), a core of its own (tick.cpu), or tick.spin_us =
 _CYCLICTEST = re.compile(r"Min:\s*(\d+) .*Avg:\s*(\d+) Max:\s*(\d+)")
 
 
-def wake_jitter_us(clock: Clock, wakes: int, period_ns: int = PERIOD_NS) -> NDArray[np.float64]:
+def wake_jitter_us(
+    clock: Clock, wakes: int, period_ns: int = PERIOD_NS, phase_ns: int = 0
+) -> NDArray[np.float64]:
     """Sleep to ``wakes`` points of the grid and return how late each wake was, µs (wakes,)."""
     late_ns = np.zeros(wakes)
-    grid = Grid(clock.now_ns(), period_ns, 0)
+    grid = Grid(clock.now_ns(), period_ns, phase_ns)
     for wake in range(wakes):
         scheduled_ns, _ = grid.next_after(clock.now_ns())
         clock.sleep_until(scheduled_ns)

@@ -10,6 +10,7 @@ from hil.driven import launch
 
 from plant_emulator.expect import Expect
 from tcs_hil.errors import ConfigError
+from tcs_hil.hil.judging.channels import namespace
 from tcs_hil.hil.judging.checks import prepare
 from tcs_hil.hil.judging.evidence import Series
 from tcs_hil.hil.judging.limits import worst_sample
@@ -137,6 +138,13 @@ def test_what_is_not_a_number_keeps_no_limit() -> None:
     assert np.isnan(worst.value)
     assert worst.at_s == 1.0
     assert not prepare(expect("!=", 5.0, signal="truth.speed_mps"), None).kept(worst.value)
+
+
+def test_in_real_time_the_plants_silence_after_its_end_is_not_judged() -> None:
+    run = launch("real-time")
+    judged_s = run.series(namespace(None).find("service.state")).time_s
+    assert run.tick_time_s[-1] > run.end_s
+    assert 0.0 <= judged_s[0] < judged_s[-1] <= run.end_s - 0.01
 
 
 def test_blocked_is_never_passed() -> None:

@@ -106,6 +106,11 @@ def test_ticks_without_a_recorded_answer_are_not_compared() -> None:
     assert comparison.ticks == 1
 
 
+def test_what_was_said_stands_until_it_is_said_otherwise() -> None:
+    first, _ = said(GOOD, GOOD)
+    assert compare(ticks(GOOD, GOOD), [first, ()], DATABASE, LIMITS, 0.0).same
+
+
 def test_a_silent_service_differs_in_everything() -> None:
     comparison = compare(ticks(GOOD), [()], DATABASE, LIMITS, 1000.0)
     assert len(comparison.first) == 5

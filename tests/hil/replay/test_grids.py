@@ -105,6 +105,11 @@ def test_a_tick_that_heard_nothing_stays_deaf() -> None:
     assert (places(first), places(second)) == ([0], [])
 
 
+def test_a_frame_the_log_lost_is_not_made_up_for_with_a_later_one() -> None:
+    first, second = recorded([0, PERIOD_NS], [SENT_NS], flight([2, 1]))
+    assert (places(first), places(second)) == ([0], [1])
+
+
 def test_the_trouble_the_bus_had_is_replayed_too() -> None:
     ticks = flight([1, 1])
     ticks["bus_condition"][1] = BusCondition.BUS_OFF

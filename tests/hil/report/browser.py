@@ -9,10 +9,13 @@ import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
-FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe")
+FLAGS = (
+    *("--headless", "--no-sandbox", "--disable-gpu"),
+    *("--window-size=1400,1000", "--remote-debugging-pipe"),
+)
 COMPLAINTS = ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded")
 
 
@@ -24,11 +27,11 @@ def program() -> str | None:
 class Page:
     """One page; ``complaints`` is all its console said, ``requests`` all it asked for."""
 
-    def __init__(self, to_browser: int, from_browser: int) -> None:
+    def __init__(self, to_browser: BinaryIO, from_browser: BinaryIO) -> None:
         self.complaints: list[Any] = []
         self.requests: list[str] = []
-        self._to = os.fdopen(to_browser, "wb", buffering=0)
-        self._from = os.fdopen(from_browser, "rb")
+        self._to = to_browser
+        self._from = from_browser
         self._number = 0
         self._session: str | None = None
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
@@ -67,8 +70,8 @@ class Page:
 
     def mouse(self, kind: str, x: float, y: float) -> None:
         """Move, press or release the mouse."""
-        parameters = {"type": f"mouse{kind}", "x": x, "y": y, "button": "left", "clickCount": 1}
-        self.call("Input.dispatchMouseEvent", **parameters)
+        held = {"button": "left", "buttons": 1, "clickCount": 1}
+        self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, **held)
 
     def _next(self) -> dict[str, Any]:
         message = bytearray()
@@ -91,14 +94,18 @@ def open_page() -> Iterator[Page]:
     browser_in, to_browser = os.pipe()
     from_browser, browser_out = os.pipe()
     command = f'exec "$@" 3<&{browser_in} 4>&{browser_out}'
-    with subprocess.Popen(
-        ["bash", "-c", command, "bash", str(program()), *FLAGS],
-        pass_fds=(browser_in, browser_out),
-        stderr=subprocess.DEVNULL,
-    ) as process:
+    with (
+        os.fdopen(to_browser, "wb", buffering=0) as questions,
+        os.fdopen(from_browser, "rb") as answers,
+        subprocess.Popen(
+            ["bash", "-c", command, "bash", str(program()), *FLAGS],
+            pass_fds=(browser_in, browser_out),
+            stderr=subprocess.DEVNULL,
+        ) as process,
+    ):
         os.close(browser_in)
         os.close(browser_out)
         try:
-            yield Page(to_browser, from_browser)
+            yield Page(questions, answers)
         finally:
             process.kill()

@@ -55,7 +55,7 @@ def test_the_console_stays_silent_and_nothing_is_asked_of_a_network(opened: Page
 
 def test_what_one_plot_is_zoomed_to_all_plots_of_the_case_are(opened: Page) -> None:
     whole = opened.run(SPANS)
-    opened.run(f"{PLOTS}[0].root.scrollIntoView()")
+    opened.run(f"{PLOTS}[0].root.scrollIntoView({{ block: 'center' }})")
     drag(opened, opened.run(BOX))
     zoomed = opened.run(SPANS)
     assert len(zoomed) >= 6

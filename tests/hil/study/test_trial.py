@@ -1,5 +1,6 @@
 import math
 
+import msgspec
 import pytest
 
 from tcs_hil.errors import ConfigError
@@ -52,3 +53,10 @@ def test_a_run_that_breaks_is_a_row_and_no_success(plan):
     assert "road[0].mu" in row["error"]
     assert not row["success"]
     assert math.isnan(row["rmse_ratio"])
+
+
+def test_what_a_quarter_car_has_not_cannot_be_varied(plan):
+    chosen = plan(Axis(key="vehicle.body.mass_kg", values=(1.0,)))
+    quarter = msgspec.structs.replace(chosen, scenario=chosen.scenario.with_variant("quarter-car"))
+    with pytest.raises(ConfigError, match="nothing to the quarter car"):
+        job(quarter, (1.0,), 0)

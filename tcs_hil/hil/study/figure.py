@@ -11,6 +11,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from tcs_hil.hil.study.plan import Axis, Study
 from tcs_hil.hil.study.trial import Row
@@ -18,8 +19,9 @@ from tcs_hil.hil.study.trial import Row
 mpl.use("Agg")
 
 BINS = 8
+TICKS = 5
 MOST_PANELS = 12
-KEPT: dict[str, Any] = {"marker": ".", "s": 22, "color": "0.7", "label": "success"}
+KEPT: dict[str, Any] = {"marker": ".", "s": 40, "color": "0.55", "label": "success"}
 BROKEN: dict[str, Any] = {"marker": "o", "s": 26, "color": "tab:red", "label": "no success"}
 
 
@@ -51,6 +53,7 @@ def _share_along(panel: Axes, axis: Axis, rows: Sequence[Row]) -> None:
         place = np.clip(np.digitize(values, edges) - 1, 0, BINS - 1)
         share = [success[place == b].mean() if (place == b).any() else np.nan for b in range(BINS)]
         panel.stairs(np.array(share, float), edges, fill=True, color="0.6")
+        panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     panel.set(xlabel=axis.key, ylabel="share of success", ylim=(0.0, 1.02))
     _tidy(panel)
 
@@ -64,6 +67,8 @@ def _runs_over(panel: Axes, across: Axis, up: Axis, rows: Sequence[Row]) -> None
             linewidths=0.0,
             **style,
         )
+    if not across.values:
+        panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     panel.set(xlabel=across.key, ylabel=up.key)
     _tidy(panel)
 

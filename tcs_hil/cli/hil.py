@@ -19,7 +19,7 @@ from tcs_hil.hil.judging.verdict import Verdict
 from tcs_hil.hil.processes import interrupted_by_sigterm
 from tcs_hil.hil.report.page import write_report
 from tcs_hil.hil.run import MODES
-from tcs_hil.hil.suite.case import Case, check_cases, with_law
+from tcs_hil.hil.suite.case import Case, check_cases, distinct, with_law
 from tcs_hil.hil.suite.junit import write_junit
 from tcs_hil.hil.suite.library import scenario_case, suite_cases
 from tcs_hil.hil.suite.provenance import sum_up
@@ -44,7 +44,10 @@ class Outputs:
 @click.command()
 @click.argument("scenarios", nargs=-1, metavar="[SCENARIO]...")
 @click.option(
-    "--suite", "suites", multiple=True, help="A folder of the library, or `all`; may be repeated."
+    "--suite",
+    "suites",
+    multiple=True,
+    help="A folder of the library, `all`, or the campaign `faults`; may be repeated.",
 )
 @click.option(
     "--mode",
@@ -121,7 +124,7 @@ def _cases(scenarios: tuple[str, ...], options: dict[str, Any]) -> list[Case]:
     if not cases:
         raise click.UsageError("name a scenario or a --suite")
     laws = _controllers(options["controller"])
-    cases = [with_law(case, law, options["preset"]) for case in cases for law in laws]
+    cases = distinct(with_law(case, law, options["preset"]) for case in cases for law in laws)
     check_cases(cases)
     return cases
 

@@ -64,6 +64,17 @@ def with_law(case: Case, controller: ControllerName | None, preset: PresetName |
     return replace(case, config=config)
 
 
+def distinct(cases: Iterable[Case]) -> list[Case]:
+    """Each case once: suites may overlap, or themselves ask for a law that was chosen."""
+    kept: list[Case] = []
+    named: dict[str, Case] = {}
+    for case in cases:
+        if named.get(case.name) != case:
+            named[case.name] = case
+            kept.append(case)
+    return kept
+
+
 def check_cases(cases: Sequence[Case]) -> None:
     """Refuse what could not be judged or told apart, before anything is driven.
 

@@ -54,6 +54,11 @@ def cli() -> None:
 @click.option(
     "--record", type=click.Path(path_type=Path), help="Write the truth to this .npz file."
 )
+@click.option(
+    "--allow-control",
+    is_flag=True,
+    help="Obey whoever drives by hand: `tcs-hil monitor --control`.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def run_command(scenario: str, vehicle: str | None, as_json: bool, **options: Any) -> None:
     """Drive a scenario on a CAN bus, in real time or in lockstep with the service."""
@@ -94,8 +99,10 @@ def _say(line: str) -> None:
 
 
 def _sentence(summary: Summary) -> str:
+    refused = summary.refused_controls
+    ignored = f"; {refused} control frames ignored, see --allow-control" if refused else ""
     return (
         f"{summary.time_s:.3f} s, {summary.distance_m:.2f} m, {summary.speed_mps * 3.6:.1f} km/h; "
         f"wake jitter p50 {summary.jitter_p50_us:.0f} us, p99 {summary.jitter_p99_us:.0f} us, "
-        f"max {summary.jitter_max_us:.0f} us"
+        f"max {summary.jitter_max_us:.0f} us{ignored}"
     )

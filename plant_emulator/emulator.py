@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import deque
 from typing import Protocol
 
+from plant_emulator.bench_control import PREPARED, ControlDesk
 from plant_emulator.bustiming import Sender
 from plant_emulator.link import Link
 from plant_emulator.plant import Plant
 from plant_emulator.recording import TruthRecorder
+from tcs_hil.canbus.bench_control import AS_IN_SCENARIO, BenchControl
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.vehicle_node import VehicleNode
 from tcs_hil.signals import TorqueLimits
@@ -31,6 +33,7 @@ class Emulator:
     drives it; nothing here looks at a clock.  ``live`` says that the service reads
     the bus when it likes (real time); otherwise it does so ``answer_s`` of the
     scenario after each sample, and `publish` brings the bus to that instant.
+    ``allow_control`` lets whoever sends control frames drive.
     """
 
     def __init__(
@@ -41,6 +44,7 @@ class Emulator:
         recorder: TruthRecorder,
         *,
         live: bool = False,
+        allow_control: bool = False,
     ) -> None:
         timing = plant.scenario.bus_timing
         self.plant = plant
@@ -49,6 +53,8 @@ class Emulator:
         self._recorder = recorder
         self._database = load_database()
         self._link = Link(plant.scenario, self._database)
+        self._desk = ControlDesk(self._database, allowed=allow_control)
+        self._control = AS_IN_SCENARIO
         self._bench_done_id = self._database.messages["BenchTickDone"].frame_id
         self._limit_delay_ns = round(timing.limit_delay_s * 1e9)
         self._answer_ns = 0 if live else round(timing.answer_s * 1e9)
@@ -79,11 +85,18 @@ class Emulator:
         return self._link.next_arrival_ns
 
     def hear(self, frame_id: int, data: bytes, stamp_ns: int) -> None:
-        """Take one frame of the service, queued at its node at ``stamp_ns`` or, if past, now."""
+        """Take one frame of somebody else, queued at its node at ``stamp_ns`` or, if past, now."""
         if frame_id == self._bench_done_id:  # belongs to the bench, not to the car
             self._node.feed(frame_id, data, stamp_ns)
+        elif frame_id == self._desk.frame_id:
+            self._obey(self._desk.hear(data, stamp_ns))
         else:
             self._link.offer(stamp_ns, frame_id, data, Sender.SERVICE)
+
+    @property
+    def refused_controls(self) -> int:
+        """How many control frames came that nobody had allowed."""
+        return self._desk.refused
 
     def send_tick(self, tick: int) -> None:
         """Tell the service that everything of this tick has been sent (lockstep)."""
@@ -102,6 +115,15 @@ class Emulator:
             self._step(limits, arrival_ns)
             limits = newer
         self._step(limits, end_ns)
+
+    def _obey(self, control: BenchControl | None) -> None:
+        if control is None:
+            return
+        if control.fault != self._control.fault:  # one that lasts remembers how it began
+            self.plant.inject(PREPARED[control.fault])
+            self._link.inject(PREPARED[control.fault])
+        self.plant.override(control.throttle_nm, control.mu_ratio)
+        self._control = control
 
     def _take(self, time_ns: int, frame_id: int, data: bytes) -> None:
         self._node.feed(frame_id, data, time_ns)

@@ -38,10 +38,14 @@ class Options:
     mode: Literal["realtime", "lockstep"] = "realtime"
     phase_us: int = 0
     record: Path | None = None
+    allow_control: bool = False
 
 
 class Summary(msgspec.Struct, frozen=True):
-    """How a run ended and how well the grid was kept (jitter is 0 in lockstep)."""
+    """How a run ended and how well the grid was kept (jitter is 0 in lockstep).
+
+    ``refused_controls`` counts the control frames of a bench that nobody had allowed.
+    """
 
     time_s: float
     distance_m: float
@@ -49,6 +53,7 @@ class Summary(msgspec.Struct, frozen=True):
     jitter_p50_us: float = 0.0
     jitter_p99_us: float = 0.0
     jitter_max_us: float = 0.0
+    refused_controls: int = 0
 
 
 def run(
@@ -71,15 +76,21 @@ def run(
     with closing(port):
         warm_up(scenario)
         plant = Plant(scenario)
-        live = options.mode == "realtime"
-        emulator = Emulator(plant, VehicleNode(load_database()), port, recorder, live=live)
+        emulator = Emulator(
+            plant,
+            VehicleNode(load_database()),
+            port,
+            recorder,
+            live=options.mode == "realtime",
+            allow_control=options.allow_control,
+        )
         notify("READY=1")
         jitter_ns = np.empty(0, np.int64)
         try:
             jitter_ns = _drive(emulator, port, options, stop)
         finally:  # a run that a silent service cut short is worth looking at, too
             recorder.save(jitter_ns)
-    return _summary(plant, jitter_ns)
+    return _summary(emulator, jitter_ns)
 
 
 def warm_up(scenario: Scenario) -> None:
@@ -97,10 +108,11 @@ def _drive(emulator: Emulator, port: CanPort, options: Options, stop: Callable[[
         return run_realtime(emulator, port, MonotonicClock(), stop, options.phase_us * 1000)
 
 
-def _summary(plant: Plant, jitter_ns: Jitter) -> Summary:
-    truth = plant.truth
+def _summary(emulator: Emulator, jitter_ns: Jitter) -> Summary:
+    truth = emulator.plant.truth
     end = (truth.time_s, truth.distance_m, truth.speed_mps)
+    refused = emulator.refused_controls
     if jitter_ns.size == 0:
-        return Summary(*end)
+        return Summary(*end, refused_controls=refused)
     p50, p99, most = np.percentile(jitter_ns, [50, 99, 100]) * 1e-3
-    return Summary(*end, float(p50), float(p99), float(most))
+    return Summary(*end, float(p50), float(p99), float(most), refused)

@@ -9,10 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
+from tcs_hil.canbus.bench_control import BenchFault
 from tcs_hil.signals import ControllerKind, TcsState
 
 TCS = "TCS"
 VEHICLE = "VEHICLE"
+BENCH = "BENCH"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +33,8 @@ class MessageContract:
 
     @property
     def receiver(self) -> str:
-        """The other of the two nodes."""
-        return VEHICLE if self.sender == TCS else TCS
+        """The node it is meant for: the vehicle hears everybody, the service the vehicle."""
+        return TCS if self.sender == VEHICLE else VEHICLE
 
 
 CONTRACT: tuple[MessageContract, ...] = (
@@ -74,13 +76,26 @@ CONTRACT: tuple[MessageContract, ...] = (
     ),
     MessageContract("BenchTick", VEHICLE, ("BenchTickNumber",), cyclic=False, protected=False),
     MessageContract("BenchTickDone", TCS, ("BenchTickAnswered",), cyclic=False, protected=False),
+    MessageContract(
+        "BenchControl", BENCH, ("BenchThrottle", "BenchMu", "BenchFault"), cyclic=False
+    ),
 )
 
-VALUE_TABLES: dict[str, type[IntEnum]] = {"TcsState": TcsState, "TcsController": ControllerKind}
+VALUE_TABLES: dict[str, type[IntEnum]] = {
+    "TcsState": TcsState,
+    "TcsController": ControllerKind,
+    "BenchFault": BenchFault,
+}
 """Signals whose value table must read like the enumeration."""
 
 NO_LIMIT_LABEL = "no limit"
 NO_LIMIT_SIGNALS = ("TorqueLimitL", "TorqueLimitR")
+AS_IN_SCENARIO_LABEL = "as in scenario"
+
+HIGHEST_RAW_LABELS = dict.fromkeys(NO_LIMIT_SIGNALS, NO_LIMIT_LABEL) | dict.fromkeys(
+    ("BenchThrottle", "BenchMu"), AS_IN_SCENARIO_LABEL
+)
+"""Signals whose highest raw value is no quantity but means what the label says."""
 
 WHEEL_SPEEDS = ("WheelSpeedFL", "WheelSpeedFR", "WheelSpeedRL", "WheelSpeedRR")
 WHEEL_SPEED_RESOLUTION_RADPS = 0.01

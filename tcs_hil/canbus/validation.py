@@ -9,8 +9,7 @@ from cantools.database.can import Database as CanDatabase
 from cantools.database.can import Message, Signal
 
 from tcs_hil.canbus.contract import (
-    NO_LIMIT_LABEL,
-    NO_LIMIT_SIGNALS,
+    HIGHEST_RAW_LABELS,
     VALUE_TABLES,
     WHEEL_SPEED_RESOLUTION_RADPS,
     WHEEL_SPEEDS,
@@ -109,8 +108,9 @@ def _check_meaning(message: Message, signal: Signal) -> None:
     if name in VALUE_TABLES and labels != {int(m): m.name for m in VALUE_TABLES[name]}:
         expected = ", ".join(f"{int(m)} {m.name}" for m in VALUE_TABLES[name])
         raise fault(message, f"needs the value table {expected}", name)
-    if name in NO_LIMIT_SIGNALS and labels != {_highest_raw(signal): NO_LIMIT_LABEL}:
-        raise fault(message, f'must call its highest raw value "{NO_LIMIT_LABEL}"', name)
+    label = HIGHEST_RAW_LABELS.get(name)
+    if label is not None and labels != {_highest_raw(signal): label}:
+        raise fault(message, f'must call its highest raw value "{label}"', name)
 
 
 def _highest_raw(signal: Signal) -> int:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import pytest
 
+from tcs_hil.canbus.bench_control import AS_IN_SCENARIO, BenchControl, BenchFault
+from tcs_hil.canbus.bench_node import BenchInbox, BenchNode
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
@@ -21,6 +23,7 @@ DATA_IDS = {
     0x0A0: "A05B19D4723EC80756FD9361B48E2CEA",
     0x0A1: "A16D38F2049BC75E83D01A4CE72965BF",
     0x0A2: "A24FE3087C95D61B32A95E80C4176DFA",
+    0x7F2: "F21D84B65FC03A977B2E0CE148D36AA9",
 }
 
 # Counter 1 and 2 in the low nibble of byte 1; all payload bits from bit 12 on, Intel order.
@@ -40,6 +43,11 @@ GOLDEN = {
 GOLDEN_STATUS = "38 af 0f c8 08 07 01 02"
 # mu raw 300 at 0 and 1050 at 11, confidence 100 at 22 and 7 at 29, delay 586 at 36
 GOLDEN_ESTIMATES = "2c d1 20 f9 a0 24"
+# fault 3 at bit 12, throttle raw 960 at 16, mu raw 300 at 28; then both overrides absent
+GOLDEN_CONTROLS = {
+    "31 c0 c3 12": BenchControl(120.0, 0.3, BenchFault.WHEEL_SPEEDS_REAR_DROPPED),
+    "02 ff ff 7f": AS_IN_SCENARIO,
+}
 
 SIGNALS = VehicleSignals(
     wheel_speed_radps=(12.34, 655.35, 12.34, 0.01),
@@ -145,3 +153,25 @@ def test_the_bench_ticks_are_plain_numbers_on_the_wire(tick, payload):
     vehicle, service = VehicleNode(load_database()), TcsNode(load_database())
     assert vehicle.bench_tick(tick) == (0x7F0, bytes.fromhex(payload))
     assert service.bench_tick_done(tick) == (0x7F1, bytes.fromhex(payload))
+
+
+def golden_controls():
+    """Payloads with the CRC of the standard, counter 1 and 2, and what they ask for."""
+    ids = bytes.fromhex(DATA_IDS[0x7F2])
+    for text, control in GOLDEN_CONTROLS.items():
+        rest = bytes.fromhex(text)
+        yield bytes([crc8h2f(rest + ids[(rest[0] & 0x0F) :][:1])]) + rest, control
+
+
+def test_the_bench_sends_the_golden_controls():
+    node = BenchNode(load_database())
+    for payload, control in golden_controls():
+        assert node.frame(control) == (0x7F2, payload)
+
+
+def test_the_emulator_reads_the_golden_controls():
+    inbox = BenchInbox(load_database())
+    assert inbox.control == AS_IN_SCENARIO
+    for payload, control in golden_controls():
+        assert inbox.feed(payload, 0)
+        assert inbox.control == control

@@ -15,7 +15,7 @@ from rich.table import Table as Page
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import convert
 from tcs_hil.errors import ConfigError
-from tcs_hil.hil.study.design import points
+from tcs_hil.hil.study.design import corners, points
 from tcs_hil.hil.study.plan import Plan, Study, read_plan
 from tcs_hil.hil.study.trial import Row, job, run
 from tcs_hil.hil.toml import write_toml
@@ -57,7 +57,7 @@ def command(study: Path, out: Path | None, only: int | None, as_json: bool, **op
     if as_json:
         click.echo(msgspec.json.encode(rows).decode())
     else:
-        _show(rows, _again_with(study, changes), page)
+        _show(rows, _again_with(study, folder, changes), page)
 
 
 def _with(plan: Plan, changes: dict[str, int]) -> Plan:
@@ -75,7 +75,8 @@ def _campaign(
     from tcs_hil.hil.study.table import Table  # noqa: PLC0415
 
     everything = list(enumerate(points(plan.study)))
-    job(plan, everything[0][1], 0)  # a key that does not exist is refused before anything runs
+    for corner in corners(plan.study):  # what does not exist or fit is refused before anything runs
+        job(plan, corner, 0)
     table = Table(folder, plan)
     tasks = [(index, point) for index, point in everything if index not in table.done]
     if tasks:
@@ -94,20 +95,22 @@ def _again(plan: Plan, index: int, folder: Path, as_json: bool) -> None:
     if index >= len(chosen):
         raise ConfigError(f"--only {index}: the study has {len(chosen)} points, from 0")
     row = run(plan, chosen[index], index)
-    path = folder / f"point-{index}.toml"
+    driven = job(plan, chosen[index], index)
+    path, service = folder / f"point-{index}.toml", folder / f"point-{index}.service.toml"
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_toml(path, job(plan, chosen[index], index).scenario)
+    write_toml(path, driven.scenario)
+    write_toml(service, driven.config)
     if as_json:
         click.echo(msgspec.json.encode(row).decode())
         return
     for key, value in row.items():
         click.echo(f"{key}: {value}")
-    click.echo(f"Scenario: {path}")
+    click.echo(f"Again on the bench: tcs-hil hil {path} --config {service}")
 
 
-def _again_with(study: Path, changes: dict[str, int]) -> str:
+def _again_with(study: Path, folder: Path, changes: dict[str, int]) -> str:
     said = [f"--{name} {value}" for name, value in changes.items()]
-    return " ".join(["tcs-hil campaign", str(study), *said, "--only"])
+    return " ".join(["tcs-hil campaign", str(study), *said, f"--out {folder}", "--only"])
 
 
 def _show(rows: list[Row], again: str, lines: list[str]) -> None:

@@ -60,6 +60,8 @@ def command(
     sources = find_sources(run)
     path = options.pop("config_path")
     config = recorded_config(sources) if path is None else read_toml(path, ServiceConfig)
+    if live:  # the run may have been recorded on another kind of bus
+        config = replace(config, bus=replace(config.bus, interface="auto"))
     with progress_bar("replaying") as advance:
         advance(0.0)
         verdict = (replay_live if live else replay_in_process)(

@@ -64,9 +64,11 @@ def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(folder
     assert _known(pq.read_table(table).to_pylist()) == _known(first)
 
     again = ended.stdout.split("Drive one again: tcs-hil campaign study.toml ")[1].splitlines()[0]
-    row = json.loads(campaign(folder, *again.split(), "--out", "out", "--json").stdout)
+    assert "--out out" in again
+    row = json.loads(campaign(folder, *again.split(), "--json").stdout)
     assert _known([row]) == _known([first[row["index"]]])
-    assert (folder / "out" / f"point-{row['index']}.toml").is_file()
+    for kept in ("toml", "service.toml"):
+        assert (folder / "out" / f"point-{row['index']}.{kept}").is_file()
 
 
 @pytest.mark.parametrize(
@@ -75,6 +77,7 @@ def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(folder
         ("road.9.mu", [], "`road.9.mu`"),
         ("road.0.mu", ["--only", "6"], "--only 6"),
         ("colour", [], "`colour`"),
+        ("sensors.pitch_error_ratio", [], "pitch_error_ratio"),  # 0.6 is beyond its bounds
     ],
 )
 def test_a_bad_study_is_refused_in_one_sentence(broken, arguments, named, folder):

@@ -36,6 +36,11 @@ def points(study: Study) -> list[Point]:
     ]
 
 
+def corners(study: Study) -> list[Point]:
+    """The point where every axis begins and the one where every axis ends."""
+    return [tuple(_at(axis, share) for axis in study.vary) for share in (0.0, 1.0)]
+
+
 def _grid(axes: tuple[Axis, ...]) -> Iterator[Point]:
     sides = [_steps(axis) for axis in axes]
     count = math.prod(map(len, sides))

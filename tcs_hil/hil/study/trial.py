@@ -39,7 +39,9 @@ def job(plan: Plan, point: Point, index: int) -> Job:
         table, key = (service, rest) if root == SERVICE else (scenario, axis.key)
         _put(table, key, value, axis.key)
     source = f"point {index}"
-    return Job(source, convert(scenario, Scenario, source), convert(service, ServiceConfig, source))
+    config = convert(service, ServiceConfig, source)
+    scenario["controller"] = {"kind": config.controller, "preset": config.control.preset}
+    return Job(source, convert(scenario, Scenario, source), config)
 
 
 def run(plan: Plan, point: Point, index: int) -> Row:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from msgspec import structs
+from msgspec import structs, to_builtins
 
 from plant_emulator.expect import Expect
 from plant_emulator.scenario import Scenario
+from tcs_hil.config import convert
 from tcs_hil.control.settings import PresetName
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.judging.checks import prepare
@@ -55,13 +56,17 @@ class Case:
 
 
 def with_law(case: Case, controller: ControllerName | None, preset: PresetName | None) -> Case:
-    """The same case under another control law; None leaves it as it is."""
+    """The same case under another control law; None leaves it as it is.
+
+    Raises:
+        ConfigError: there is no such law or preset.
+    """
     config = case.config
     if controller is not None:
         config = structs.replace(config, controller=controller)
     if preset is not None:
         config = structs.replace(config, control=structs.replace(config.control, preset=preset))
-    return replace(case, config=config)
+    return replace(case, config=convert(to_builtins(config), ServiceConfig, case.scenario_name))
 
 
 def distinct(cases: Iterable[Case]) -> list[Case]:

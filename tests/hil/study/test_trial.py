@@ -60,3 +60,7 @@ def test_what_a_quarter_car_has_not_cannot_be_varied(plan):
     quarter = msgspec.structs.replace(chosen, scenario=chosen.scenario.with_variant("quarter-car"))
     with pytest.raises(ConfigError, match="nothing to the quarter car"):
         job(quarter, (1.0,), 0)
+
+
+def test_the_scenario_names_the_law_it_was_driven_with(plan):
+    assert job(plan(controller="pi"), (1400.0, 0.3), 0).scenario.controller.kind == "pi"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tcs_hil.control.bank_kmpc import BankOptimiser
+from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.compensated import CompensatedController, DelayedOptimiser
 from tcs_hil.control.grip_update import GripOptimiser
 from tcs_hil.control.guarded import GuardedController
@@ -25,7 +26,10 @@ def bank_mpc(settings: ControlSettings, bank: KoopmanBank) -> Controller:
     integral = BoundedIntegral(
         settings.slip_reference, settings.period_s, settings.default.integral_limit_s
     )
-    law = CompensatedController(_optimiser(settings, bank), integral, settings.period_s)
+    vehicle = bank.provenance.settings.vehicle
+    break_away = BreakAway(settings.slip_reference, vehicle, settings.period_s)
+    optimiser = _optimiser(settings, bank)
+    law = CompensatedController(optimiser, integral, break_away, settings.period_s)
     return GuardedController(law, PiController(settings), bank.validity, settings.period_s)
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
+from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
@@ -27,20 +29,35 @@ class DelayedOptimiser(Predicts, Protocol):
         ...
 
 
+GIVEN_BACK_NM = 1.0
+
+SHORT_DELAY_S = 0.007
+"""Behind a longer one the integral counts less: as quick as on a short loop, it swings."""
+
+
 class CompensatedController:
     """Receding horizon from the state at which the command will act.
 
     ``wheel.loop_delay_s`` says how long that is after the instant of the
     measurement; the prediction model carries the state, e_int with it, through
-    the torques already sent.
+    the torques already sent.  From ``entry_slip_ratio`` on the law decides, until
+    it has given all torque back; before, the driver does.
     """
 
     def __init__(
-        self, optimiser: DelayedOptimiser, integral: BoundedIntegral, period_s: float
+        self,
+        optimiser: DelayedOptimiser,
+        integral: BoundedIntegral,
+        break_away: BreakAway,
+        period_s: float,
+        entry_slip_ratio: float = -math.inf,
     ) -> None:
         self._optimiser = optimiser
         self._integral = integral
+        self._break_away = break_away
         self._period_s = period_s
+        self._entry_slip_ratio = entry_slip_ratio
+        self._awake = False
         self._sent = SentTorques()
 
     def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
@@ -53,16 +70,29 @@ class CompensatedController:
         """Forget everything, as at start-up."""
         self._integral.reset()
         self._optimiser.reset()
+        self._break_away.reset()
         self._sent.reset()
+        self._awake = False
 
     def _solve(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
-        measured = self._optimiser.state(wheel, self._integral.value_s)
+        measured = self._optimiser.state(wheel, self._weighed_integral_s(wheel.loop_delay_s))
         delay_periods = wheel.loop_delay_s / self._period_s
         state = roll_forward(self._optimiser, measured, self._sent, delay_periods)
-        plan = self._optimiser.plan(state, self._sent.newest_nm, torque_ref_nm)
+        ceiling_nm = self._break_away.ceiling_nm(wheel, torque_ref_nm, self._sent.newest_nm)
+        plan = self._optimiser.plan(state, self._sent.newest_nm, ceiling_nm)
         if plan.status is SolveStatus.FAILED:
             self._optimiser.reset()  # what failed is no warm start
             return Proposal(torque_ref_nm, plan.status, plan.iterations)
-        torque_nm = clamp(float(plan.inputs[0]), torque_ref_nm)
-        self._integral.advance(wheel.slip_ratio, torque_nm, torque_ref_nm)
+        torque_nm = self._entered(wheel, clamp(float(plan.inputs[0]), ceiling_nm), ceiling_nm)
+        self._integral.advance(wheel.slip_ratio, torque_nm, ceiling_nm)
         return Proposal(torque_nm, plan.status, plan.iterations, plan.next_nm)
+
+    def _entered(self, wheel: WheelState, torque_nm: float, ceiling_nm: float) -> float:
+        """``torque_nm`` from the entry slip on until all is given back, else ``ceiling_nm``."""
+        slips = wheel.slip_ratio > self._entry_slip_ratio
+        self._awake = slips or (self._awake and torque_nm < ceiling_nm - GIVEN_BACK_NM)
+        return torque_nm if self._awake else ceiling_nm
+
+    def _weighed_integral_s(self, delay_s: float) -> float:
+        share = min(SHORT_DELAY_S / max(delay_s, SHORT_DELAY_S), 1.0)
+        return share * share * self._integral.value_s

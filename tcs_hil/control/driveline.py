@@ -17,6 +17,8 @@ class Driveline(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     the time constant from commanded to air-gap torque, ``tyre_relaxation_m`` the
     way a tyre rolls until its force has followed its slip: shorter than a real
     one's, because belief in a slow tyre makes the law shy of torque at low speed.
+    ``shaft_damping_nmsprad`` is less than most shafts': who believes in little
+    damping excites no shaft that has no more.
     """
 
     wheel_inertia_kgm2: Positive = 0.95

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.compensated import CompensatedController
 from tcs_hil.control.driveline_core import Situation, driveline_core
 from tcs_hil.control.force_disturbance import ForceDisturbance
@@ -19,6 +20,10 @@ from tcs_hil.model.vehicle import Vehicle
 FloatArray = NDArray[np.float64]
 
 SLOWEST_MPS = 0.2
+
+CALM_SHARE = 0.5
+CALM_MPS = (4.0, 6.0)
+"""Up to the first speed the slip's residuals count half, from the second on in full."""
 
 
 class DrivelineOptimiser:
@@ -61,10 +66,13 @@ class DrivelineOptimiser:
         return self._core.plan(state, situation)
 
     def _urgency(self, state: FloatArray) -> float:
-        """Factor on the slip's residuals: 1, less below the soft speed, where slip is touchy."""
+        """Factor on the slip's residuals: 1, less at low speed, where slip is touchy."""
         slip_speed_mps, omega_radps = state[:2].tolist()
         speed_mps: float = omega_radps * self._vehicle.wheel_radius_m - slip_speed_mps
-        return min(max(speed_mps, SLOWEST_MPS) / self._tuning.soft_speed_mps, 1.0)
+        soft = min(max(speed_mps, SLOWEST_MPS) / self._tuning.soft_speed_mps, 1.0)
+        slow_mps, fast_mps = CALM_MPS
+        brisk = min(max((speed_mps - slow_mps) / (fast_mps - slow_mps), 0.0), 1.0)
+        return soft * (CALM_SHARE + (1.0 - CALM_SHARE) * brisk)
 
     def reset(self) -> None:
         """Forget the last plan and the disturbance."""
@@ -84,5 +92,7 @@ def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedCon
         BoundedIntegral(
             settings.slip_reference, settings.period_s, settings.default.integral_limit_s
         ),
+        BreakAway(settings.slip_reference, vehicle, settings.period_s),
         settings.period_s,
+        settings.default.nmpc.entry_ratio * settings.slip_reference,
     )

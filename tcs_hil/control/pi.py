@@ -30,7 +30,7 @@ class PiController:
             self.reset()
             return trivial
         proportional_nm = self._gain_nm(wheel) * (self._slip_reference - wheel.slip_ratio)
-        if not self._awake_after(wheel.slip_ratio, proportional_nm, torque_ref_nm):
+        if not self._awake_after(wheel, proportional_nm, torque_ref_nm):
             return Proposal(torque_ref_nm)
         integral_nm = self._integral_nm + self._integral_share * proportional_nm
         self._integral_nm = clamp(integral_nm, torque_ref_nm)
@@ -51,9 +51,14 @@ class PiController:
         speed_mps = clamp(wheel.vehicle_speed_mps, self._tuning.gain_speed_ceiling_mps)
         return self._tuning.gain_base_nm + self._tuning.gain_slope_nm_per_mps * speed_mps
 
-    def _awake_after(self, slip_ratio: float, proportional_nm: float, torque_ref_nm: float) -> bool:
-        near = slip_ratio > self._tuning.entry_ratio * self._slip_reference
+    def _awake_after(self, wheel: WheelState, proportional_nm: float, torque_ref_nm: float) -> bool:
+        near = self._slips(wheel)
         if near and not self._awake:
             self._integral_nm = clamp(torque_ref_nm - proportional_nm, torque_ref_nm)
         self._awake = near or (self._awake and self._integral_nm < torque_ref_nm)
         return self._awake
+
+    def _slips(self, wheel: WheelState) -> bool:
+        """Whether the slip is near its reference, as a ratio and in speed."""
+        near = wheel.slip_ratio > self._tuning.entry_ratio * self._slip_reference
+        return near and wheel.slip_speed_mps > self._tuning.entry_slip_mps

@@ -28,6 +28,8 @@ class PiSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     integral_time_s: TimeConstant = 0.05
     entry_ratio: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.8
     """Share of the slip reference at which the law takes over from the driver."""
+    entry_slip_mps: Weight = 0.0
+    """Least slip speed to take over at: near standstill a ratio is made of noise."""
 
 
 class KmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -71,6 +73,8 @@ class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     weight_change: PositiveWeight = 4e-2  # on (u_k - u_{k-1})²
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 2
     observer_time_s: TimeConstant = 0.02  # of the force disturbance
+    entry_ratio: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.3
+    """Share of the slip reference at which the law takes over from the driver."""
     soft_speed_mps: Speed = 2.5
     """Below it slip answers torque so fast that its weights shrink with the speed squared."""
 
@@ -109,7 +113,11 @@ class DefaultSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     delay: DelaySettings = DelaySettings()
     integral_limit_s: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.02
     pi: PiSettings = PiSettings(
-        gain_base_nm=2.0, gain_slope_nm_per_mps=12.0, integral_time_s=0.015, entry_ratio=1.0
+        gain_base_nm=2.0,
+        gain_slope_nm_per_mps=16.0,
+        integral_time_s=0.03,
+        entry_ratio=1.0,
+        entry_slip_mps=0.15,
     )
     kmpc: BankKmpcSettings = BankKmpcSettings()
     nmpc: DrivelineNmpcSettings = DrivelineNmpcSettings()

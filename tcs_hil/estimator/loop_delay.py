@@ -12,7 +12,7 @@ CANDIDATES = int(MAX_DELAY_PERIODS) + 1
 WINDOW_TICKS = 60.0
 TELLING_NM = 5.0
 """Travel of the torque, over the candidates' time, that outweighs the noise of its measurement."""
-SLEW = 0.03
+SLEW = 0.06
 """The estimate moves by at most so many seconds per second."""
 SETTLED_TICKS = 25
 """A motor must have been held so long that what the driver asked before is forgotten."""

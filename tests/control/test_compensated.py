@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.compensated import CompensatedController
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
+from tcs_hil.model.vehicle import Vehicle
 from tests.control.recorder import wheel_at
 
 SPINNING = wheel_at(5.0, 0.3)
@@ -40,8 +42,10 @@ class Scripted:
         self.resets += 1
 
 
-def control(optimiser: Scripted) -> CompensatedController:
-    return CompensatedController(optimiser, BoundedIntegral(0.1, 0.002, 0.02), 0.002)
+def control(optimiser: Scripted, entry_slip_ratio: float = 0.0) -> CompensatedController:
+    integral = BoundedIntegral(0.1, 0.002, 0.02)
+    break_away = BreakAway(0.1, Vehicle(), 0.002)
+    return CompensatedController(optimiser, integral, break_away, 0.002, entry_slip_ratio)
 
 
 def test_it_plans_from_the_state_behind_the_torques_under_way() -> None:
@@ -87,3 +91,20 @@ def test_the_integral_reaches_the_next_solve_and_reset_clears_everything() -> No
     controller.step(SPINNING, 200.0)
     assert optimiser.integrals == [0.0, 0.002 * (0.1 - SPINNING.slip_ratio), 0.0]
     assert optimiser.asked[2][1] == 0.0
+
+
+def test_before_the_entry_slip_the_driver_decides_and_after_it_the_law_until_all_is_back() -> None:
+    controller = control(Scripted(80.0, 80.0, 80.0, 200.0, 80.0), entry_slip_ratio=0.03)
+    slips = [0.02, 0.04, 0.02, 0.02, 0.02]
+    torques = [controller.step(wheel_at(5.0, slip), 200.0).torque_nm for slip in slips]
+    assert torques == [200.0, 80.0, 80.0, 200.0, 200.0]
+
+
+def test_a_long_delay_takes_weight_off_the_integral() -> None:
+    optimiser = Scripted(80.0, 80.0, 80.0)
+    controller = control(optimiser)
+    for delay_s in (0.0, 0.007, 0.014):
+        controller.step(replace(SPINNING, loop_delay_s=delay_s), 200.0)
+    _, short, long = optimiser.integrals
+    assert short == 0.002 * (0.1 - SPINNING.slip_ratio)
+    assert long == 0.25 * 2.0 * short

@@ -52,3 +52,11 @@ def test_the_gain_rises_with_speed_up_to_its_ceiling() -> None:
 
     assert drop(1.0) < drop(5.0) < drop(15.0)
     assert drop(30.0) == pytest.approx(drop(15.0), rel=1e-3)  # kappa's epsilon fades with speed
+
+
+def test_a_slip_ratio_without_a_slip_speed_does_not_wake_it_near_standstill() -> None:
+    controller = PiController(ControlSettings())
+    assert controller.step(wheel_at(0.5, 0.15), 150.0).torque_nm == 150.0
+    for _ in range(20):
+        reduced = controller.step(wheel_at(2.0, 0.15), 150.0).torque_nm
+    assert reduced < 150.0

@@ -36,11 +36,14 @@ def test_on_a_real_bus_the_default_laws_hold_the_reference(
     assert run.limit_cycle is None
 
 
+@pytest.mark.parametrize("controller", ["kmpc", "nmpc"])
 @pytest.mark.parametrize("delay_s", [0.004, 0.008])
-def test_a_delay_believed_wrong_by_a_period_makes_no_limit_cycle(delay_s: float) -> None:
+def test_a_delay_believed_wrong_by_a_period_makes_no_limit_cycle(
+    controller: ControllerName, delay_s: float
+) -> None:
     delay = DelaySettings(delay_s=delay_s, measured=False)
     control = ControlSettings(default=DefaultSettings(delay=delay))
-    run = judge("manoeuvre-1", ServiceConfig(controller="nmpc", control=control), 1.5)
+    run = judge("manoeuvre-1", ServiceConfig(controller=controller, control=control), 1.5)
     assert run.limit_cycle is None
     assert run.slip.peak_ratio < 0.3
 

@@ -9,6 +9,9 @@ import tcs_hil.hil.driven_run  # noqa: F401
 
 pytest_plugins = ["pytester"]
 
+ONCE = ("-p", "no:tcs_hil", "-p", "tcs_hil.hil.pytest_plugin")
+"""Where the project is installed, pytest has found the plug-in already."""
+
 SCENARIO = """
 description = "a launch, cut short"
 duration_s = 0.3
@@ -30,7 +33,7 @@ def session(pytester: pytest.Pytester):
     def run(body: str) -> pytest.RunResult:
         lines = "\n".join(f"    {line}" for line in body.splitlines())
         pytester.makepyfile(f"def test_launch(hil):\n{lines}\n")
-        return pytester.runpytest_inprocess("-p", "tcs_hil.hil.pytest_plugin")
+        return pytester.runpytest_inprocess(*ONCE)
 
     return run
 

@@ -28,8 +28,6 @@ def test_a_person_drives_onto_ice_and_gives_the_car_back(tmp_path: Path, channel
     truth = read_truth(recording)
     mu, slip = truth["mu"][:, 0], truth["slip_ratio"][:, 0]
     assert set(np.unique(mu)) == {0.3, 1.0}
-    onto_ice = int(np.argmax(mu < 0.5))
-    assert slip[:onto_ice].max() < 0.05
     assert slip[mu < 0.5].max() > 0.09
 
 

@@ -7,14 +7,15 @@ import math
 from tcs_hil.canbus.ceiling import ceiling_codes
 from tcs_hil.canbus.contract import TCS
 from tcs_hil.canbus.database import Database
-from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox, WatchedMailbox
+from tcs_hil.canbus.inbox import WatchedMailbox
 from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
+from tcs_hil.canbus.service_node import ServiceNode
 from tcs_hil.signals import BusCondition, Command, Measurement, RoadEstimate
 
 MS_PER_S = 1e3
 
 
-class TcsNode:
+class TcsNode(ServiceNode):
     """Turns frames into a measurement and a command into frames.
 
     Until a message has arrived its speeds and torques are zero, its validity
@@ -27,22 +28,12 @@ class TcsNode:
         self._rear = WatchedMailbox(messages["WheelSpeedsRear"], (0.0, 0.0, 0, 0, 0.0, 0))
         self._motor = WatchedMailbox(messages["MotorState"], (0.0, 0.0, 0.0, 0.0))
         self._driver = WatchedMailbox(messages["DriverRequest"], (0.0, 0.0))
-        self._bench = Mailbox(messages["BenchTick"], (0,))
-        self._inbox = Inbox(
-            [self._front, self._rear, self._motor, self._driver, self._bench],
-            own_ids=database.frame_ids_of(TCS),
-        )
-        self._own_ids_heard = 0
+        mailboxes = (self._front, self._rear, self._motor, self._driver)
+        super().__init__(database, mailboxes, database.frame_ids_of(TCS))
         self._limit = Outbox(messages["TorqueLimit"])
         self._status = Outbox(messages["TcsStatus"])
         self._estimates = Outbox(messages["TcsEstimates"])
-        self._bench_done = Outbox(messages["BenchTickDone"])
         self._ceilings = ceiling_codes(messages["TorqueLimit"])
-
-    @property
-    def counters(self) -> InboxCounters:
-        """What became of the frames fed so far."""
-        return self._inbox.counters
 
     @property
     def newest_wheel_stamp_ns(self) -> int | None:
@@ -50,15 +41,6 @@ class TcsNode:
         return max(
             (s for s in (self._front.stamp_ns, self._rear.stamp_ns) if s is not None), default=None
         )
-
-    @property
-    def bench_tick(self) -> int | None:
-        """Newest lockstep tick the bench has completed, None before the first."""
-        return None if self._bench.stamp_ns is None else int(self._bench.values[0])
-
-    def feed(self, frame_id: int, data: bytes, stamp_ns: int) -> bool:
-        """Take one frame; True if it was good and its values are now the newest."""
-        return self._inbox.feed(frame_id, data, stamp_ns)
 
     def measurement(self, now_ns: int, bus: BusCondition = BusCondition.OK) -> Measurement:
         """Newest value of every input, its age and state at ``now_ns``, and the bus's condition.
@@ -100,15 +82,6 @@ class TcsNode:
             frames.append(self._estimates_frame(command.road))
         frames.append(self._limit_frame(command))
         return frames
-
-    def bench_tick_done(self, tick: int) -> OutgoingFrame:
-        """Tell the bench, in lockstep, that everything of this tick has been sent."""
-        return self._bench_done.frame(tick)
-
-    def _intrusion(self) -> BusCondition:
-        """Whether an identifier of ours was heard from somebody else since the last call."""
-        heard, self._own_ids_heard = self._own_ids_heard, self.counters.own_id
-        return BusCondition.INTRUDER if self._own_ids_heard > heard else BusCondition.OK
 
     def _limit_frame(self, command: Command) -> OutgoingFrame:
         left, right = self._ceilings

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 from tcs_hil.canbus.database import load_database
-from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox
 from tcs_hil.canbus.mapping.group import Group
 from tcs_hil.canbus.mapping.mailbox import MappedMailbox
 from tcs_hil.canbus.mapping.plan import (
@@ -20,14 +18,15 @@ from tcs_hil.canbus.mapping.plan import (
 )
 from tcs_hil.canbus.mapping.reading import Reading
 from tcs_hil.canbus.mapping.sender import MappedSender
-from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
+from tcs_hil.canbus.outbox import OutgoingFrame
+from tcs_hil.canbus.service_node import ServiceNode
 from tcs_hil.signals import BusCondition, Command, Measurement
 
 ACCEL_PATIENCE_CYCLES = 3
 """A measurement does not tell how old the acceleration is: older than this it is none."""
 
 
-class MappedNode:
+class MappedNode(ServiceNode):
     """Does what ``TcsNode`` does, with the messages of a signal map.
 
     Wheel speeds nobody vouches for are handed on as such; a torque or a motor's
@@ -54,35 +53,13 @@ class MappedNode:
         self._accel = readings[ACCEL_INPUT]
         self._accel_patience_s = _accel_patience_s(plan)
         self._senders = tuple(MappedSender(output) for output in plan.outputs)
-        self._lockstep(mailboxes, plan)
-
-    def _lockstep(self, mailboxes: Mapping[str, MappedMailbox], plan: Plan) -> None:
-        messages = load_database().messages
-        self._bench = Mailbox(messages["BenchTick"], (0,))
-        self._bench_done = Outbox(messages["BenchTickDone"])
         own_ids = [output.message.frame_id for output in plan.outputs]
-        # The car's own messages win, should it use the identifier of the bench.
-        self._inbox = Inbox([self._bench, *mailboxes.values()], own_ids)
-        self._own_ids_heard = 0
-
-    @property
-    def counters(self) -> InboxCounters:
-        """What became of the frames fed so far."""
-        return self._inbox.counters
+        super().__init__(load_database(), mailboxes.values(), own_ids)
 
     @property
     def newest_wheel_stamp_ns(self) -> int | None:
         """Stamp of the newest good wheel-speed frame: where the latency starts."""
         return max((*self._front.stamps_ns, *self._rear.stamps_ns), default=None)
-
-    @property
-    def bench_tick(self) -> int | None:
-        """Newest lockstep tick the bench has completed, None before the first."""
-        return None if self._bench.stamp_ns is None else int(self._bench.values[0])
-
-    def feed(self, frame_id: int, data: bytes, stamp_ns: int) -> bool:
-        """Take one frame; True if it was good."""
-        return self._inbox.feed(frame_id, data, stamp_ns)
 
     def measurement(self, now_ns: int, bus: BusCondition = BusCondition.OK) -> Measurement:
         """Newest value of every input, its age and state at ``now_ns``, and the bus's condition."""
@@ -119,18 +96,9 @@ class MappedNode:
         """Frames of this tick: every message whose cycle is due."""
         return [sender.frame(command) for sender in self._senders if sender.is_due(now_ns)]
 
-    def bench_tick_done(self, tick: int) -> OutgoingFrame:
-        """Tell the bench, in lockstep, that everything of this tick has been sent."""
-        return self._bench_done.frame(tick)
-
     def _accel_x_mps2(self, now_ns: int) -> float:
         fresh = self._accel.valid and self._accel.age_s(now_ns) <= self._accel_patience_s
         return self._accel.value if fresh else math.nan
-
-    def _intrusion(self) -> BusCondition:
-        """Whether an identifier of ours was heard from somebody else since the last call."""
-        heard, self._own_ids_heard = self._own_ids_heard, self.counters.own_id
-        return BusCondition.INTRUDER if self._own_ids_heard > heard else BusCondition.OK
 
 
 def _accel_patience_s(plan: Plan) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import msgspec
+
 from tcs_hil.control.protocol import Controller, Proposal
 from tcs_hil.estimator import Estimate, Estimates
 from tcs_hil.gate import Gate, Permission
@@ -31,8 +33,7 @@ class Law:
     controllers: tuple[Controller, Controller]
 
 
-@dataclass(frozen=True, slots=True)
-class Trace:
+class Trace(msgspec.Struct, frozen=True):
     """What the newest tick thought, for the flight recorder."""
 
     estimate: Estimate

@@ -7,9 +7,10 @@ left, right.  Torque and speed of a motor are on the motor side of the gear.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
+
+import msgspec
 
 Pair = tuple[float, float]
 FourWheels = tuple[float, float, float, float]
@@ -77,8 +78,7 @@ class Suspect(IntEnum):
     DRIVER = 128
 
 
-@dataclass(frozen=True, slots=True)
-class Measurement:
+class Measurement(msgspec.Struct, frozen=True):
     """Newest value of every input, with the age of each source at the tick.
 
     An age is ``math.inf`` until the first good frame.  ``accel_x_mps2`` is NaN
@@ -109,8 +109,7 @@ class TorqueLimits(NamedTuple):
     right_nm: float = NO_LIMIT
 
 
-@dataclass(frozen=True, slots=True)
-class RoadEstimate:
+class RoadEstimate(msgspec.Struct, frozen=True):
     """What the service believes about road and loop, for display and logging.
 
     ``friction_ratio`` is mu under each front wheel, worth as much as its
@@ -127,8 +126,7 @@ UNKNOWN_ROAD = RoadEstimate((0.0, 0.0), (0.0, 0.0), 0.0)
 """Nothing was estimated; the confidence says so."""
 
 
-@dataclass(frozen=True, slots=True)
-class Command:
+class Command(msgspec.Struct, frozen=True):
     """Everything one tick tells the vehicle."""
 
     limits: TorqueLimits

@@ -1,7 +1,8 @@
 """Good values to start a test from."""
 
-from dataclasses import replace
 from typing import Any
+
+from msgspec.structs import replace
 
 from tcs_hil.signals import Measurement
 

@@ -6,13 +6,13 @@ back that shows STANDBY.
 """
 
 import math
-from dataclasses import replace
 from typing import Any
 
 from factories import measurement
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+from msgspec.structs import replace
 
 from tcs_hil.control.protocol import Proposal, SolveStatus, Source, WheelState
 from tcs_hil.estimator import Estimator

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import msgspec
+
 from tcs_hil.canbus.ceiling import ceiling_codes
 from tcs_hil.canbus.contract import VEHICLE
 from tcs_hil.canbus.database import Database
@@ -14,8 +16,7 @@ from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
 from tcs_hil.signals import ControllerKind, FourWheels, Pair, RoadEstimate, TcsState, TorqueLimits
 
 
-@dataclass(frozen=True, slots=True)
-class VehicleSignals:
+class VehicleSignals(msgspec.Struct, frozen=True):
     """What the sensors and the driver put on the bus; the mirror of ``Measurement``.
 
     ``accel_x_mps2`` is None where no accelerometer is fitted or it is invalid.

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
+
+import msgspec
 
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.signals import UNKNOWN_ROAD, Measurement, Pair, RoadEstimate
 
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
+class Estimate(msgspec.Struct, frozen=True):
     """State of the car at one tick: body speed and both driven wheels (left, right)."""
 
     vehicle_speed_mps: float

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.plausibility.driven import DrivenWheel, MotorTorque

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 import numpy as np
@@ -76,7 +75,7 @@ def test_without_a_motor_on_the_bus_it_goes_on_with_what_it_sent() -> None:
     law = bank_mpc(SETTINGS, BANK)
     wheel = wheel_at(6.0, 0.1, 100.0)
     known = [law.step(wheel, 200.0).torque_nm for _ in range(20)][-1]
-    proposal = law.step(dataclasses.replace(wheel, motor_torque_nm=math.nan), 200.0)
+    proposal = law.step(replace(wheel, motor_torque_nm=math.nan), 200.0)
     assert proposal.status is SolveStatus.OK
     assert proposal.torque_nm == pytest.approx(known, abs=20.0)  # no jump, no wide-open throttle
 

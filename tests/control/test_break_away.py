@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
+from msgspec.structs import replace
 
 from tcs_hil.control.break_away import GROWTH_S, HOLD_S, BreakAway
 from tcs_hil.control.protocol import WheelState

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
+from msgspec.structs import replace
 
 from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.compensated import CompensatedController

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from tcs_hil.control.factory import make_controller
 from tcs_hil.control.protocol import Controller, Proposal, SolveStatus

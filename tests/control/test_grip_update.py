@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 
 from tcs_hil.control.bank_law import bank_mpc
 from tcs_hil.control.grip_update import GripEstimate

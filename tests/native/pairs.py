@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -76,7 +75,7 @@ def random_questions(seed: int, count: int) -> Iterator[tuple[WheelState, float]
     for _ in range(count):
         torque_nm = rng.choice((math.nan, rng.uniform(0.0, 250.0)))
         wheel = wheel_at(rng.uniform(0.0, 40.0), rng.uniform(-0.1, 0.9), torque_nm)
-        seen = dataclasses.replace(
+        seen = replace(
             wheel,
             shaft_twist_rad=rng.choice((math.nan, rng.uniform(-0.1, 0.1))),
             tyre_force_n=rng.choice((math.nan, rng.uniform(-500.0, 2000.0))),

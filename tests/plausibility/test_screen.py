@@ -1,11 +1,11 @@
 import math
-from dataclasses import replace
 from typing import Any
 
 import pytest
 from factories import measurement
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.plausibility import Plausibility, screened

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.port import Frame, PortCounters

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 from msgspec.structs import replace as replace_struct
 from prometheus_client import CollectorRegistry, generate_latest
 from runtime.fakes import COMMAND, PERIOD_NS, RUN, insight, made_pass

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from runtime.fakes import COMMAND, PERIOD_NS, RUN, TRACE, insight, made_pass
 
 from tcs_hil.control.protocol import Proposal, SolveStatus

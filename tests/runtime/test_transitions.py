@@ -1,9 +1,9 @@
 """What is logged of the states, and what is not."""
 
 import logging
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 from runtime.fakes import COMMAND
 
 from tcs_hil.fault_codes import FaultCode

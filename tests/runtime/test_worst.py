@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 from runtime.fakes import PERIOD_NS, RUN, TRACE, insight, made_pass
 
 from tcs_hil.control.protocol import Proposal, SolveStatus

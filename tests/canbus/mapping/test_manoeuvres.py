@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import NamedTuple, Protocol
 
-import msgspec
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from plant_emulator.emulator import PERIOD_NS, Emulator
 from plant_emulator.plant import Plant
@@ -28,9 +27,7 @@ from tcs_hil.signals import Command, InputState, Measurement, TcsState
 from .makers import MAKERS, QUENDAL, Maker
 from .translator import Frame, Translator
 
-LAUNCH = msgspec.structs.replace(
-    load_scenario("manoeuvre-1").with_variant("vehicle"), duration_s=1.5
-)
+LAUNCH = replace(load_scenario("manoeuvre-1").with_variant("vehicle"), duration_s=1.5)
 
 
 class Road(Protocol):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import tomllib
-from dataclasses import replace
 from typing import Any
 
 import pytest
 from factories import measurement
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from tcs_hil.canbus.mapping.node import MappedNode
 from tcs_hil.config import convert

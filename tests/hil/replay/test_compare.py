@@ -1,9 +1,9 @@
 """Recorded and replayed answers side by side."""
 
 import math
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.frame import Frame

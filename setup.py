@@ -1,5 +1,48 @@
-"""The native step: the one thing about the package that pyproject.toml cannot say."""
+"""What is compiled when the package is installed, which pyproject.toml cannot say.
+
+The laws' steps are C, built by cffi.  The rest of a tick is compiled by mypyc from the Python that
+runs where there is no compiler; not in an editable installation, in which a changed file must be a
+changed program.  TCS_HIL_INTERPRETED=1 leaves it out anywhere.
+"""
+
+import os
+import sys
 
 from setuptools import setup
 
-setup(cffi_modules=["tcs_hil/native/build.py:ffibuilder"])
+# Behaviour only.  mypyc loses the options of a msgspec struct, so settings and signals are not
+# here; numba wants the bytecode of what it compiles itself, so the plant's equations are not.
+TICK = {
+    "tcs_hil": "gate pipeline supervisor",
+    "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
+    " vehicle_node watch",
+    "tcs_hil/canbus/mapping": "node",
+    "tcs_hil/control": "break_away compensated fallback force_disturbance guarded integrator pi"
+    " screening sent speed_disturbance",
+    "tcs_hil/estimator": "body_speed direct driveline_observer friction fused loop_delay side",
+    "tcs_hil/plausibility": "driven rolling screen trace",
+    "tcs_hil/runtime": "lockstep record stopwatch transitions trigger",
+    "plant_emulator": "emulator link virtual_bus",
+}
+
+
+def compiled_tick():
+    """Extensions of the tick's modules; a compiler that fails leaves them interpreted."""
+    if "editable_wheel" in sys.argv or os.environ.get("TCS_HIL_INTERPRETED"):
+        return []
+    from mypyc.build import mypycify  # noqa: PLC0415 - only where it is used
+
+    files = [f"{room}/{name}.py" for room, names in TICK.items() for name in names.split()]
+    # Without our own settings of mypy: an isolated build has none of our dependencies' types.
+    extensions = mypycify(
+        ["--config-file=", "--ignore-missing-imports", *files],
+        opt_level="3",
+        debug_level="0",
+        group_name="tcs_hil_tick",
+    )
+    for extension in extensions:
+        extension.optional = True
+    return extensions
+
+
+setup(cffi_modules=["tcs_hil/native/build.py:ffibuilder"], ext_modules=compiled_tick())

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from benchmarks.plant_runs import drive, plant
-from plant_emulator.bustiming import BusTiming, Sender, VirtualBus
+from plant_emulator.bustiming import BusTiming
 from plant_emulator.compiled import records
 from plant_emulator.tyre import Tyre, tyre_force
+from plant_emulator.virtual_bus import Sender, VirtualBus
 from tcs_hil.canbus.database import load_database
 
 mpl.use("Agg")

@@ -6,10 +6,10 @@ from collections import deque
 from typing import Protocol
 
 from plant_emulator.bench_control import PREPARED, ControlDesk
-from plant_emulator.bustiming import Sender
 from plant_emulator.link import Link
 from plant_emulator.plant import Plant
 from plant_emulator.recording import TruthRecorder
+from plant_emulator.virtual_bus import Sender
 from tcs_hil.canbus.bench_control import AS_IN_SCENARIO, BenchControl
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.vehicle_node import VehicleNode

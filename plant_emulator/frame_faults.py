@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from e2e.p02 import e2e_p02_protect
 
-from plant_emulator.bustiming import Sender
 from plant_emulator.faults import MESSAGES, UNPROTECTED, Fault
+from plant_emulator.virtual_bus import Sender
 from tcs_hil.canbus.database import Database
 from tcs_hil.canbus.e2e import COUNTER_MASK
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from plant_emulator.bustiming import Delivery, Sender, VirtualBus
 from plant_emulator.faults import Fault
 from plant_emulator.frame_faults import FrameFaults, TimedFrame
 from plant_emulator.scenario import Scenario
+from plant_emulator.virtual_bus import Delivery, Sender, VirtualBus
 from tcs_hil.canbus.database import Database
 
 

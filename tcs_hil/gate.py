@@ -9,10 +9,8 @@ from __future__ import annotations
 import math
 from collections import deque
 from enum import IntEnum
-from typing import Annotated
 
-import msgspec
-
+from tcs_hil.safety_settings import GateSettings
 from tcs_hil.signals import NO_LIMIT
 
 BEYOND_ANY_REQUEST_NM = 1_000.0
@@ -26,28 +24,6 @@ class Permission(IntEnum):
     FOLLOW_SLOWLY = 1  # lowered at once, raised no faster than released
     HOLD = 2  # lowered, never raised
     RELEASE = 3  # the controllers are not asked; the driver gets the torque back
-
-
-Rate = Annotated[float, msgspec.Meta(gt=0.0, le=1e6)]
-
-
-class GateSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How fast a ceiling may move.
-
-    ``rise_rate_nmps`` and ``fall_rate_nmps`` bound a trusted law;
-    ``window_rise_nm`` is the most it may raise in ``window_s``.  A ceiling that
-    is given up rises by ``release_rate_nmps``.  One that reaches the request, to
-    within ``slack_nm``, is lifted; not before ``lift_s``, though, where it was the
-    request that fell, for that may come back.
-    """
-
-    rise_rate_nmps: Rate = 20_000.0
-    fall_rate_nmps: Rate = 125_000.0
-    release_rate_nmps: Rate = 500.0
-    window_s: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)] = 0.1
-    window_rise_nm: Annotated[float, msgspec.Meta(gt=0.0, le=1e4)] = 200.0
-    slack_nm: Annotated[float, msgspec.Meta(ge=0.0, le=5.0)] = 0.05
-    lift_s: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.02
 
 
 class Gate:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-
-import msgspec
+from typing import NamedTuple
 
 from tcs_hil.control.protocol import Controller, Proposal
 from tcs_hil.estimator import Estimate, Estimates
@@ -33,7 +32,7 @@ class Law:
     controllers: tuple[Controller, Controller]
 
 
-class Trace(msgspec.Struct, frozen=True):
+class Trace(NamedTuple):
     """What the newest tick thought, for the flight recorder."""
 
     estimate: Estimate

@@ -13,13 +13,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from enum import IntEnum
-from typing import Annotated, NamedTuple
-
-import msgspec
+from typing import NamedTuple
 
 from tcs_hil.control.protocol import Proposal, Source
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.gate import Permission
+from tcs_hil.safety_settings import SupervisorSettings
 from tcs_hil.signals import BusCondition, InputState, Measurement, Suspect, TcsState
 
 PERIOD_S = 0.002
@@ -33,23 +32,6 @@ MOTORS = Suspect.MOTOR_LEFT | Suspect.MOTOR_RIGHT
 AWAITING = FaultCode.AWAITING_INPUT
 VALID = InputState.VALID
 NOT_YET = (InputState.NO_DATA, InputState.INIT)
-
-Cycles = Annotated[int, msgspec.Meta(ge=0, le=100)]
-Ticks = Annotated[int, msgspec.Meta(ge=1, le=1000)]
-
-
-class SupervisorSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Patience of the supervisor.
-
-    Cycles are those of the input concerned: up to ``bridged_cycles`` the last
-    value serves, beyond ``tolerated_cycles`` it is lost.  A controller may be
-    silent for as many ticks.
-    """
-
-    bridged_cycles: Cycles = 2
-    tolerated_cycles: Cycles = 10
-    good_ticks_to_recover: Ticks = 10
-    overruns_to_degrade: Ticks = 5
 
 
 class Health(IntEnum):

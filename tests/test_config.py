@@ -4,7 +4,7 @@ import pytest
 
 from tcs_hil.config import read_toml
 from tcs_hil.errors import ConfigError
-from tcs_hil.gate import GateSettings
+from tcs_hil.safety_settings import GateSettings
 
 
 def write(folder: Path, text: str) -> Path:

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tcs_hil.gate import BEYOND_ANY_REQUEST_NM, Gate, GateSettings, Permission
+from tcs_hil.gate import BEYOND_ANY_REQUEST_NM, Gate, Permission
+from tcs_hil.safety_settings import GateSettings
 from tcs_hil.signals import NO_LIMIT
 
 PERIOD_S = 0.002

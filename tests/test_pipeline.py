@@ -6,12 +6,13 @@ from factories import measurement
 from tcs_hil.control.protocol import Proposal, SolveStatus, Source, WheelState
 from tcs_hil.estimator import Estimator
 from tcs_hil.fault_codes import FaultCode
-from tcs_hil.gate import Gate, GateSettings
+from tcs_hil.gate import Gate
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.pipeline import Law, Pipeline
 from tcs_hil.plausibility import Plausibility
+from tcs_hil.safety_settings import GateSettings, SupervisorSettings
 from tcs_hil.signals import NO_LIMIT, ControllerKind, Suspect, TcsState, TorqueLimits
-from tcs_hil.supervisor import Supervisor, SupervisorSettings
+from tcs_hil.supervisor import Supervisor
 
 
 class Scripted:

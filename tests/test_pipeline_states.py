@@ -16,10 +16,11 @@ from msgspec.structs import replace
 
 from tcs_hil.control.protocol import Proposal, SolveStatus, Source, WheelState
 from tcs_hil.estimator import Estimator
-from tcs_hil.gate import Gate, GateSettings, Permission
+from tcs_hil.gate import Gate, Permission
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.pipeline import Law, Pipeline
 from tcs_hil.plausibility import Plausibility
+from tcs_hil.safety_settings import GateSettings, SupervisorSettings
 from tcs_hil.signals import (
     NO_LIMIT,
     BusCondition,
@@ -30,7 +31,7 @@ from tcs_hil.signals import (
     TcsState,
     TorqueLimits,
 )
-from tcs_hil.supervisor import Supervisor, SupervisorSettings
+from tcs_hil.supervisor import Supervisor
 
 PERIOD_S = 0.002
 REQUEST_NM = 250.0

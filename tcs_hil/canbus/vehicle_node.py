@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
-
-import msgspec
+from typing import NamedTuple, TypeAlias
 
 from tcs_hil.canbus.ceiling import ceiling_codes
 from tcs_hil.canbus.contract import VEHICLE
@@ -16,7 +14,7 @@ from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
 from tcs_hil.signals import ControllerKind, FourWheels, Pair, RoadEstimate, TcsState, TorqueLimits
 
 
-class VehicleSignals(msgspec.Struct, frozen=True):
+class VehicleSignals(NamedTuple):
     """What the sensors and the driver put on the bus; the mirror of ``Measurement``.
 
     ``accel_x_mps2`` is None where no accelerometer is fitted or it is invalid.

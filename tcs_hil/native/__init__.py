@@ -1,4 +1,4 @@
-"""The laws' steps in C, where a compiler was at hand when the package was installed.
+"""What was compiled when the package was installed: the laws' steps in C, and the tick.
 
 Numbers and arrays go in, numbers come out; what they mean is known to
 `tcs_hil.control.native`.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from functools import cache
 from importlib import import_module
+from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec
 from typing import Any
 
@@ -17,12 +18,20 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 _EXTENSION = "tcs_hil.native._core"
+_TICK = "tcs_hil.pipeline"
 
 
 @cache
 def is_built() -> bool:
     """Is there a compiled step in this installation?"""
     return find_spec(_EXTENSION) is not None
+
+
+@cache
+def tick_is_compiled() -> bool:
+    """Does the rest of a tick run as machine code (setup.py), or is it interpreted?"""
+    spec = find_spec(_TICK)
+    return spec is not None and (spec.origin or "").endswith(tuple(EXTENSION_SUFFIXES))
 
 
 @cache

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tcs_hil.canbus.bus import choose_interface
 from tcs_hil.canbus.port import CanPort, open_port
+from tcs_hil.native import tick_is_compiled
 from tcs_hil.runtime import recording
 from tcs_hil.runtime.clock import Clock, MonotonicClock
 from tcs_hil.runtime.frame_trigger import FrameTrigger
@@ -63,7 +64,8 @@ def serve(config: ServiceConfig, announce: Callable[[str], None]) -> Summary:
         announce(f"bus: {description}")
         announce(
             f"controller: {config.controller} ({backend_of(config)}), "
-            f"slip reference {config.control.slip_reference}"
+            f"slip reference {config.control.slip_reference}, "
+            f"tick {'compiled' if tick_is_compiled() else 'interpreted'}"
         )
         if config.tick.trigger != "lockstep":
             for grant in prepare(config.tick.cpu, config.tick.priority):

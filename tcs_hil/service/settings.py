@@ -9,11 +9,10 @@ from msgspec import Meta
 
 from tcs_hil.canbus.mapping.settings import SignalMap
 from tcs_hil.control.settings import ControlSettings
-from tcs_hil.gate import GateSettings
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.realtime import FIFO_PRIORITY
+from tcs_hil.safety_settings import GateSettings, SupervisorSettings
 from tcs_hil.signals import ControllerKind
-from tcs_hil.supervisor import SupervisorSettings
 
 ControllerName = Literal["off", "pi", "kmpc", "nmpc"]
 TriggerName = Literal["timer", "frame", "lockstep"]

@@ -86,7 +86,7 @@ def test_what_the_vehicle_sends_the_service_measures(service, vehicle):
 
 
 def test_a_car_without_accelerometer_measures_nan(service, vehicle):
-    hand_over(vehicle.frames(replace(SIGNALS, accel_x_mps2=None), 0), service)
+    hand_over(vehicle.frames(SIGNALS._replace(accel_x_mps2=None), 0), service)
     assert math.isnan(service.measurement(0).accel_x_mps2)
 
 

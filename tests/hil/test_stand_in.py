@@ -6,8 +6,8 @@ import pytest
 from plant_emulator.scenario import load_scenario
 from tcs_hil.control.protocol import Controller, Proposal, SolveStatus, WheelState
 from tcs_hil.fault_codes import FaultCode
-from tcs_hil.gate import GateSettings
 from tcs_hil.hil.simulation import simulate
+from tcs_hil.safety_settings import GateSettings
 from tcs_hil.service import wiring
 from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.signals import TcsState

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plant_emulator.bustiming import IDEAL, BusTiming, Sender, VirtualBus
+from plant_emulator.bustiming import IDEAL, BusTiming
 from plant_emulator.frame_bits import frame_bits
+from plant_emulator.virtual_bus import Sender, VirtualBus
 
 WIRE = BusTiming(bitrate=500_000)
 BIT_NS = 2000

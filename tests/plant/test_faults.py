@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from plant_emulator.bustiming import Sender
 from plant_emulator.faults import Fault, next_boundary
 from plant_emulator.frame_faults import FrameFaults, TimedFrame
 from plant_emulator.signal_faults import LimitFaults
 from plant_emulator.value_faults import alteration
+from plant_emulator.virtual_bus import Sender
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals

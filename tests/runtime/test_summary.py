@@ -78,8 +78,8 @@ def test_overruns_skips_and_failures_are_counted(summarised: Summarised) -> None
 
 
 def test_states_and_statuses_are_counted_by_name(summarised: Summarised) -> None:
-    failed = replace(
-        TRACE, proposals=(Proposal(51.0, SolveStatus.FAILED), Proposal(52.0, SolveStatus.OK))
+    failed = TRACE._replace(
+        proposals=(Proposal(51.0, SolveStatus.FAILED), Proposal(52.0, SolveStatus.OK))
     )
     degraded = made_pass()._replace(command=replace(COMMAND, state=TcsState.DEGRADED))
     summary = summarised(
@@ -93,7 +93,7 @@ def test_states_and_statuses_are_counted_by_name(summarised: Summarised) -> None
 
 
 def test_a_law_that_was_not_asked_is_in_no_count(summarised: Summarised) -> None:
-    unasked = replace(TRACE, proposals=(Proposal(math.nan), Proposal(math.nan)))
+    unasked = TRACE._replace(proposals=(Proposal(math.nan), Proposal(math.nan)))
     summary = summarised([record(made_pass(), insight()._replace(trace=unasked))])
     assert summary.statuses == {}
     assert summary.solve is None

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from msgspec.structs import replace
 from runtime.fakes import PERIOD_NS, RUN, TRACE, insight, made_pass
 
 from tcs_hil.control.protocol import Proposal, SolveStatus
@@ -82,7 +81,7 @@ def test_what_the_tick_met_stands_beside_it(worst: Judge) -> None:
     failed = (Proposal(51.0, SolveStatus.FAILED, iterations=9), Proposal(52.0, iterations=8))
     skipper = late(20, send_us=90)
     skipper = skipper._replace(tick=skipper.tick._replace(skipped=3))
-    knowing = insight()._replace(trace=replace(TRACE, proposals=failed))
+    knowing = insight()._replace(trace=TRACE._replace(proposals=failed))
     (tick,) = worst(1, skipper, knowing=knowing)
     assert (tick.frames, tick.skipped, tick.state) == (4, 3, "ACTIVE")
     assert tick.statuses == ("FAILED", "OK")

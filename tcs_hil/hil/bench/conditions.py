@@ -10,9 +10,11 @@ LIBRARIES = ("numpy", "casadi", "osqp", "daqp", "do-mpc", "python-can")
 
 
 def conditions() -> str:
-    """Processor, kernel, governor, versions, and whether there is a native step."""
+    """Processor, kernel, governor, versions, and what was compiled."""
     machine = ThisMachine()
     versions = [f"{name} {machine.version(name) or 'not installed'}" for name in LIBRARIES]
     step = "with" if machine.has_native_step() else "without"
+    tick = "compiled" if machine.has_compiled_tick() else "interpreted"
     governor = machine.read(GOVERNOR) or "unknown"
-    return f"{describe_machine()}, governor {governor}; {', '.join(versions)}; {step} native step"
+    built = f"{step} native step, tick {tick}"
+    return f"{describe_machine()}, governor {governor}; {', '.join(versions)}; {built}"

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tcs_hil.gate import GateSettings
 from tcs_hil.hil.faults.record import FloatArray, Record
+from tcs_hil.safety_settings import GateSettings, SupervisorSettings
 from tcs_hil.signals import TcsState
-from tcs_hil.supervisor import DRIVER_CYCLE_S, PERIOD_S, SupervisorSettings
+from tcs_hil.supervisor import DRIVER_CYCLE_S, PERIOD_S
 
 Mask = NDArray[np.bool_]
 

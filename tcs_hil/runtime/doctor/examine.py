@@ -25,6 +25,7 @@ CHECKS = (
     software.bus_software,
     software.solvers,
     software.native_step,
+    software.compiled_tick,
     bus.socketcan,
 )
 

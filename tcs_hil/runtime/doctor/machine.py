@@ -42,6 +42,10 @@ class Machine(Protocol):
         """Whether the package was installed with its compiled extension."""
         ...
 
+    def has_compiled_tick(self) -> bool:
+        """Whether the rest of a tick was compiled too."""
+        ...
+
     def speaks_can(self) -> bool:
         """Whether the kernel has CAN sockets."""
         ...
@@ -90,6 +94,10 @@ class ThisMachine:
     def has_native_step(self) -> bool:
         """Ask the package."""
         return native.is_built()
+
+    def has_compiled_tick(self) -> bool:
+        """Ask the package."""
+        return native.tick_is_compiled()
 
     def speaks_can(self) -> bool:
         """Try to make a CAN socket."""

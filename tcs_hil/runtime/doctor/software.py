@@ -31,6 +31,16 @@ def native_step(machine: Machine) -> Finding:
     )
 
 
+def compiled_tick(machine: Machine) -> Finding:
+    """Whether everything else in a tick was compiled, too; an editable installation never is."""
+    what = "tick"
+    if machine.has_compiled_tick():
+        return ok(what, "compiled")
+    return warn(
+        what, "interpreted: takes twice the time", "pip install . instead of pip install -e ."
+    )
+
+
 def _versions(machine: Machine, what: str, names: tuple[str, ...]) -> Finding:
     versions = {name: machine.version(name) for name in names}
     missing = [name for name, version in versions.items() if version is None]

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from hil.faults.records import calm, troubled
 
-from tcs_hil.gate import GateSettings
 from tcs_hil.hil.faults.record import Record
 from tcs_hil.hil.faults.rises import allowed_nm, beyond_window_nm, rises_nm
+from tcs_hil.safety_settings import GateSettings, SupervisorSettings
 from tcs_hil.signals import NO_LIMIT, TcsState
-from tcs_hil.supervisor import SupervisorSettings
 
 GATE = GateSettings()
 DEGRADED, FAULT = TcsState.DEGRADED, TcsState.FAULT

@@ -19,6 +19,7 @@ class FakeMachine:
     can: bool = True
     resolution_s: float = 1e-9
     native_step: bool = True
+    compiled_tick: bool = True
 
     def read(self, path: str) -> str | None:
         return self.files.get(path)
@@ -37,6 +38,9 @@ class FakeMachine:
 
     def has_native_step(self) -> bool:
         return self.native_step
+
+    def has_compiled_tick(self) -> bool:
+        return self.compiled_tick
 
     def speaks_can(self) -> bool:
         return self.can

@@ -132,6 +132,13 @@ def test_without_a_native_step_the_doctor_says_how_to_get_one() -> None:
     assert "gcc" in finding.remedy
 
 
+def test_an_interpreted_tick_is_no_failure_but_told() -> None:
+    assert software.compiled_tick(FakeMachine()).verdict is OK
+    finding = software.compiled_tick(FakeMachine(compiled_tick=False))
+    assert finding.verdict is WARN
+    assert "pip install ." in finding.remedy
+
+
 def test_a_missing_distribution_is_a_hard_failure_with_its_name() -> None:
     present = dict.fromkeys((*software.BUS, *software.SOLVERS), "1.0")
     assert software.bus_software(FakeMachine(versions=present)).verdict is OK

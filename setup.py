@@ -22,7 +22,7 @@ TICK = {
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused loop_delay side",
     "tcs_hil/plausibility": "driven rolling screen trace",
     "tcs_hil/runtime": "lockstep record stopwatch transitions trigger",
-    "plant_emulator": "emulator link virtual_bus",
+    "plant_emulator": "emulator link plant plant_faults virtual_bus",
 }
 
 

@@ -13,7 +13,7 @@ def test_every_line_has_a_verdict_and_every_trouble_a_remedy() -> None:
         [sys.executable, *arguments], capture_output=True, text=True, check=False
     )
     findings = json.loads(ended.stdout)
-    assert len(findings) == 15
+    assert len(findings) == 16
     assert all(finding["found"] for finding in findings)
     assert all(finding["remedy"] for finding in findings if finding["verdict"] != "ok")
     assert ended.returncode == int(any(finding["verdict"] == "fail" for finding in findings))

@@ -14,15 +14,16 @@ from plant_emulator.road import road_table, site_at
 from plant_emulator.scenario import Scenario
 from plant_emulator.truth import ROW_SIZE, TRUTH_COLUMNS, Row
 from plant_emulator.tyre import modified_slip
+from tcs_hil.names import column_names
 from tcs_hil.signals import Pair
 
-TORQUES = ("torque_demand_fl_nm", "torque_demand_fr_nm")
+TORQUES = column_names("torque_demand_nm", (2,))
 """Inputs every unit must have: what each motor is asked for, request and limit considered."""
 
-ROAD = ("mu_fl", "mu_fr", "mu_rl", "mu_rr", "grade_ratio")
+ROAD = (*column_names("mu", (4,)), "grade_ratio")
 """Inputs a unit may have: the road under it."""
 
-REQUIRED = ("speed_mps", *(f"wheel_speed_{wheel}_radps" for wheel in ("fl", "fr", "rl", "rr")))
+REQUIRED = ("speed_mps", *column_names("wheel_speed_radps", (4,)))
 """Outputs every unit must have; any other column of the truth is taken where it has it."""
 
 START_SPEED = "start_speed_mps"

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, TypeAlias, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+from tcs_hil.names import column_names
 from tcs_hil.signals import FourWheels, Pair
 
 
@@ -68,20 +69,11 @@ Row: TypeAlias = NDArray[np.float64]
 ROW_SIZE = TRUTH_DTYPE.itemsize // 8
 _STARTS = {name: int(TRUTH_DTYPE.fields[name][1]) // 8 for name, _ in _FIELDS}  # type: ignore[index]
 
-_WHEELS = ("fl", "fr", "rl", "rr")
-_UNITS = ("s", "m", "mps", "mps2", "rad", "radps", "nm", "n", "ratio")
-
-
-def _columns() -> Iterator[tuple[str, int]]:
-    """``limit_nm`` has the columns ``limit_fl_nm`` and ``limit_fr_nm``, ``mu`` has ``mu_fl``..."""
-    for name, width in _FIELDS:
-        stem, _, unit = name.rpartition("_")
-        for place, wheel in enumerate(_WHEELS[:width]):
-            inside = f"{stem}_{wheel}_{unit}" if unit in _UNITS and stem else f"{name}_{wheel}"
-            yield name if width == 1 else inside, _STARTS[name] + place
-
-
-TRUTH_COLUMNS = dict(_columns())
+TRUTH_COLUMNS = {
+    column: place
+    for name in _STARTS
+    for place, column in enumerate(column_names(name, TRUTH_DTYPE[name].shape), _STARTS[name])
+}
 """Name and place of every number in a row."""
 
 TIME = _STARTS["time_s"]

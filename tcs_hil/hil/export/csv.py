@@ -6,9 +6,9 @@ from pathlib import Path
 
 from pyarrow import csv
 
-from tcs_hil.hil.export.names import NO_UNIT
 from tcs_hil.hil.export.parquet import arrow_table
 from tcs_hil.hil.export.table import Run
+from tcs_hil.names import NO_UNIT
 
 LONG = "scenario"
 """Text of some thousand characters: the other formats have it."""

@@ -11,8 +11,8 @@ from cantools.database.can import Database as CanDatabase
 from cantools.database.can import Message, Signal
 from cantools.database.errors import DecodeError
 
-from tcs_hil.hil.export.names import NO_UNIT
 from tcs_hil.hil.export.table import Channel, Instants, Table
+from tcs_hil.names import NO_UNIT
 
 Decoded = dict[str, float]
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from tcs_hil.control.protocol import SolveStatus
 from tcs_hil.fault_codes import FaultCode
-from tcs_hil.hil.export.names import unit_of
 from tcs_hil.hil.export.table import Channel, Instants, Table
+from tcs_hil.names import unit_of
 from tcs_hil.signals import BusCondition, ControllerKind, TcsState
 
 COMMENT = "What the service knew, decided and took, tick by tick (flight recording)"

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tcs_hil.hil.export.names import unit_of, wheel_names
 from tcs_hil.hil.export.table import Channel, Instants, Table
+from tcs_hil.names import column_names, unit_of
 
 COMMENT = "What really happened in the plant; time_s is the scenario's own"
 
@@ -22,7 +22,6 @@ def truth_table(rows: NDArray[np.void], time_ns: Instants) -> Table:
 
 
 def _channels(name: str, values: NDArray[Any]) -> Iterator[Channel]:
-    columns = [values] if values.ndim == 1 else list(values.T)
-    names = [name] if values.ndim == 1 else wheel_names(name, len(columns))
-    for each, column in zip(names, columns, strict=True):
+    names = column_names(name, values.shape[1:])
+    for each, column in zip(names, np.atleast_2d(values.T), strict=True):
         yield Channel(each, np.ascontiguousarray(column), unit_of(each))

@@ -15,8 +15,8 @@ from cantools.database.can import Message, Signal
 from plant_emulator.truth import TRUTH_DTYPE
 from tcs_hil.canbus.database import parse_dbc
 from tcs_hil.errors import ConfigError
-from tcs_hil.hil.export.names import NO_UNIT, unit_of, wheel_names
 from tcs_hil.hil.export.telemetry import ENUMERATIONS
+from tcs_hil.names import NO_UNIT, column_names, unit_of
 from tcs_hil.runtime.record import FIELDS
 
 Source = Literal["truth", "service", "bus"]
@@ -140,8 +140,7 @@ def _channels(database: str | None) -> Iterator[Channel]:
 
 def _truth_channels() -> Iterator[Channel]:
     for name in TRUTH_DTYPE.names or ():
-        shape = TRUTH_DTYPE[name].shape
-        for column in wheel_names(name, shape[0]) if shape else [name]:
+        for column in column_names(name, TRUTH_DTYPE[name].shape):
             yield Channel("truth", column, _unit(column))
 
 

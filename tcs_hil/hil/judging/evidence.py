@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from plant_emulator.scenario import Scenario
 from tcs_hil.canbus.database import parse_dbc
-from tcs_hil.hil.export.names import wheel_names
 from tcs_hil.hil.export.time_base import Parts, TimeBase, align
 from tcs_hil.hil.judging.channels import LATENCY, STAGES, Channel, signals
 from tcs_hil.hil.logs.bus_log import read_log
 from tcs_hil.hil.metrics import Truth
 from tcs_hil.hil.run import Mode, RunFiles
+from tcs_hil.names import column_names
 from tcs_hil.runtime.record import NO_LATENCY
 from tcs_hil.runtime.recording import read_info
 from tcs_hil.service.settings import ServiceConfig
@@ -141,8 +141,6 @@ def truth_columns(truth: Truth) -> dict[str, FloatArray]:
     columns: dict[str, FloatArray] = {}
     for name in truth.dtype.names or ():
         values = truth[name]
-        if values.ndim == 1:
-            columns[name] = values
-        else:
-            columns |= zip(wheel_names(name, values.shape[1]), values.T, strict=True)
+        names = column_names(name, values.shape[1:])
+        columns |= zip(names, np.atleast_2d(values.T), strict=True)
     return columns

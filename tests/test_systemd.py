@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from needs import needs
 
 from tcs_hil.config import read_toml
 from tcs_hil.service.settings import ServiceConfig
@@ -16,25 +17,24 @@ UNITS = sorted(SHIPPED.glob("*.service"))
 CONFIGURATION = Path("etc/tcs-hil/tcs-hil.toml")
 EXPOSURE_LIMIT_TENTHS = 15
 
-needs_systemd_analyze = pytest.mark.skipif(
-    shutil.which("systemd-analyze") is None, reason="systemd-analyze is not installed"
-)
+
+@pytest.fixture
+def systemd_analyze() -> str:
+    return needs(shutil.which("systemd-analyze"), "systemd-analyze (apt-get install systemd)")
 
 
-@needs_systemd_analyze
 @pytest.mark.parametrize("unit", UNITS, ids=lambda unit: unit.name)
-def test_the_exposure_of_a_unit_is_low(unit: Path) -> None:
+def test_the_exposure_of_a_unit_is_low(unit: Path, systemd_analyze: str) -> None:
     limit = f"--threshold={EXPOSURE_LIMIT_TENTHS}"
-    subprocess.run(["systemd-analyze", "security", "--offline=true", limit, unit], check=True)
+    subprocess.run([systemd_analyze, "security", "--offline=true", limit, unit], check=True)
 
 
-@needs_systemd_analyze
-def test_systemd_finds_nothing_wrong_with_the_units(tmp_path: Path) -> None:
+def test_systemd_finds_nothing_wrong_with_the_units(tmp_path: Path, systemd_analyze: str) -> None:
     for unit in UNITS:
         # The programs are not installed here; verify wants to see them.
         text = unit.read_text().replace("/opt/tcs-hil/bin/", "/usr/bin/env ")
         (tmp_path / unit.name).write_text(text)
-    verify = ["systemd-analyze", "verify", "--man=no", *sorted(tmp_path.iterdir())]
+    verify = [systemd_analyze, "verify", "--man=no", *sorted(tmp_path.iterdir())]
     found = subprocess.run(verify, check=True, capture_output=True, text=True)
     assert str(tmp_path) not in found.stderr
 

@@ -10,6 +10,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from needs import needs
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("tcs_hil", "plant_emulator")
@@ -106,8 +107,8 @@ def test_the_installed_emulator_lists_every_scenario(installed: Path, tmp_path: 
     assert missing == []
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 def test_with_a_compiler_the_installed_laws_are_native(installed: Path, tmp_path: Path) -> None:
+    needs(shutil.which("cc"), "a C compiler (apt-get install gcc)")
     decided_by = output(installed / "python", "-c", DECIDED_BY, folder=tmp_path)
     assert decided_by.strip() == "native"
 

@@ -65,8 +65,6 @@ def command(limit_nm: float) -> Command:
 
 @pytest.fixture(scope="module", params=["drive.blf", "drive.mf4"])
 def log(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if request.param.endswith(".mf4"):
-        pytest.importorskip("asammdf", reason="asammdf is an extra")
     path = tmp_path_factory.mktemp("drives") / request.param
     database = load_database()
     car, service = VehicleNode(database), TcsNode(database)

@@ -1,13 +1,13 @@
-"""The tests of the native step need it built; where it is not they say so and are left out."""
+"""Every test here needs the native step built."""
 
 from __future__ import annotations
 
 import pytest
+from needs import needs
 
 from tcs_hil import native
 
 
 @pytest.fixture(autouse=True)
 def _built() -> None:
-    if not native.is_built():
-        pytest.skip("no native step was built in this installation")
+    needs(native.is_built(), "the native step: a C compiler when this was installed")

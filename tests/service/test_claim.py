@@ -14,11 +14,11 @@ from tcs_hil.errors import BusError
 from tcs_hil.service.claim import ChannelClaim
 
 HOLD = """
-import sys, time
+import signal, sys
 from tcs_hil.service.claim import ChannelClaim
 with ChannelClaim("embedded", sys.argv[1]):
     print("held", flush=True)
-    time.sleep(60)
+    signal.pause()
 """
 
 

@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 from asammdf import MDF
 from hil.logs.made_run import PERIOD_NS, TICKS, wheel_speed_radps
+from needs import needs
 from pyarrow import parquet
 
 from tcs_hil.errors import ConfigError
@@ -136,8 +137,8 @@ def test_a_candump_log_holds_the_frames_of_the_recording(
     assert read[-1].timestamp - read[0].timestamp == pytest.approx(GRID_S[-1], abs=2e-6)
 
 
-@pytest.mark.skipif(shutil.which("log2asc") is None, reason="can-utils is not installed")
 def test_log2asc_reads_the_candump_log(run: Run, tmp_path: Path) -> None:
+    needs(shutil.which("log2asc"), "log2asc (apt-get install can-utils)")
     path = written(run, tmp_path / "run.log")
     text = subprocess.run(
         ["log2asc", "-I", str(path), "can0"], capture_output=True, text=True, check=True

@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from needs import needs
+
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = (
     *("--headless", "--no-sandbox", "--disable-gpu"),
@@ -19,9 +21,10 @@ FLAGS = (
 COMPLAINTS = ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded")
 
 
-def program() -> str | None:
+def program() -> str:
     """The browser at hand."""
-    return next(filter(None, map(shutil.which, PROGRAMS)), None)
+    found = next(filter(None, map(shutil.which, PROGRAMS)), None)
+    return needs(found, "chromium (apt-get install chromium)")
 
 
 class Page:
@@ -91,6 +94,7 @@ class Page:
 @contextmanager
 def open_page() -> Iterator[Page]:
     """Start a browser with one page; it ends with the context."""
+    browser = program()
     browser_in, to_browser = os.pipe()
     from_browser, browser_out = os.pipe()
     command = f'exec "$@" 3<&{browser_in} 4>&{browser_out}'
@@ -98,7 +102,7 @@ def open_page() -> Iterator[Page]:
         os.fdopen(to_browser, "wb", buffering=0) as questions,
         os.fdopen(from_browser, "rb") as answers,
         subprocess.Popen(
-            ["bash", "-c", command, "bash", str(program()), *FLAGS],
+            ["bash", "-c", command, "bash", browser, *FLAGS],
             pass_fds=(browser_in, browser_out),
             stderr=subprocess.DEVNULL,
         ) as process,

@@ -19,8 +19,9 @@ import click
 from msgspec.structs import replace
 
 from benchmarks.laws import LAWS
-from benchmarks.scores import HEADINGS, as_json, cells
-from benchmarks.section import markdown, show, write_section
+from benchmarks.options import json_option, law_option, write_option
+from benchmarks.scores import HEADINGS, cells
+from benchmarks.section import markdown, tell
 from plant_emulator import bustiming, sensors
 from plant_emulator.scenario import Scenario, VehicleTable, load_scenario
 from tcs_hil.cli.progress import progress_bar
@@ -101,29 +102,13 @@ def _driveline(scenario: Scenario, **changes: float) -> Scenario:
 
 
 @click.command()
-@click.option(
-    "--law",
-    "laws",
-    type=click.Choice(list(LAWS)),
-    multiple=True,
-    default=DEFAULT_LAWS,
-    show_default=True,
-    help="May be given several times.",
-)
-@click.option("--json", "machine_readable", is_flag=True, help="Print JSON instead of tables.")
-@click.option(
-    "--write", type=click.Path(dir_okay=False, path_type=Path), help="Page to put the tables into."
-)
+@law_option(DEFAULT_LAWS)
+@json_option
+@write_option
 def main(laws: tuple[str, ...], machine_readable: bool, write: Path | None) -> None:
     """Switch each effect of the plant on alone and judge the laws on it."""
     rows = drive(laws)
-    lines = report(rows)
-    if write:
-        write_section(write, "benchmarks.ablation", lines)
-    if machine_readable:
-        click.echo(as_json(rows))
-    else:
-        show(lines)
+    tell("benchmarks.ablation", report(rows), write, rows if machine_readable else None)
 
 
 if __name__ == "__main__":

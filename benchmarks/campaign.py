@@ -14,8 +14,8 @@ import click
 import numpy as np
 
 from benchmarks.laws import DEFAULTS, LAWS
-from benchmarks.scores import as_json
-from benchmarks.section import markdown, show, write_section
+from benchmarks.options import json_option, law_option, write_option
+from benchmarks.section import markdown, tell
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.campaign import Sample, Trial, draw, run_campaign, scenario_of, worst
@@ -131,22 +131,12 @@ def _percentiles(values: Sequence[float], percents: Sequence[float]) -> str:
 
 
 @click.command()
-@click.option(
-    "--law",
-    "laws",
-    type=click.Choice(list(LAWS)),
-    multiple=True,
-    default=DEFAULTS,
-    show_default=True,
-    help="May be given several times.",
-)
+@law_option(DEFAULTS)
 @click.option("--plants", type=click.IntRange(1), default=500, show_default=True)
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True)
 @click.option("--only", type=click.IntRange(0), help="Drive and draw the plant of this index.")
-@click.option("--json", "machine_readable", is_flag=True, help="Print every run as JSON.")
-@click.option(
-    "--write", type=click.Path(dir_okay=False, path_type=Path), help="Page to put the tables into."
-)
+@json_option
+@write_option
 def main(
     laws: tuple[str, ...],
     plants: int,
@@ -166,11 +156,8 @@ def main(
         lines += ["", f"Figure: {draw_figure(samples[0], laws)}"]
     if write:
         lines += draw_maps(write.parent, campaign)
-        write_section(write, "benchmarks.campaign", lines)
-    if machine_readable:
-        click.echo(as_json([(name, trial) for name in laws for trial in campaign[name]]))
-    else:
-        show(lines)
+    trials = [(name, trial) for name in laws for trial in campaign[name]]
+    tell("benchmarks.campaign", lines, write, trials if machine_readable else None)
 
 
 if __name__ == "__main__":

@@ -18,8 +18,9 @@ from pathlib import Path
 import click
 
 from benchmarks.laws import DEFAULTS, LAWS, YARDSTICK
-from benchmarks.scores import HEADINGS, as_json, cells
-from benchmarks.section import markdown, show, write_section
+from benchmarks.options import json_option, write_option
+from benchmarks.scores import HEADINGS, cells
+from benchmarks.section import markdown, tell
 from plant_emulator.scenario import list_scenarios, load_scenario
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.control.settings import ControlSettings
@@ -115,10 +116,8 @@ def _held(scores: dict[tuple[str, str], Score], scenarios: Sequence[str]) -> str
 
 @click.command()
 @click.option("--quick", is_flag=True, help="Only the paper's two manoeuvres.")
-@click.option("--json", "machine_readable", is_flag=True, help="Print JSON instead of tables.")
-@click.option(
-    "--write", type=click.Path(dir_okay=False, path_type=Path), help="Page to put the tables into."
-)
+@json_option
+@write_option
 def main(quick: bool, machine_readable: bool, write: Path | None) -> None:
     """Judge every law in both manoeuvres, and the default ones against the PI in the library."""
     rows = drive(list(MANOEUVRES), list(LAWS), "manoeuvres")
@@ -127,12 +126,7 @@ def main(quick: bool, machine_readable: bool, write: Path | None) -> None:
         others = [item.name for item in list_scenarios() if item.name not in MANOEUVRES]
         rows += drive(others, (YARDSTICK, *DEFAULTS), "library")
         lines += against_the_yardstick([row for row in rows if row.law in (YARDSTICK, *DEFAULTS)])
-    if write:
-        write_section(write, "benchmarks.control", lines)
-    if machine_readable:
-        click.echo(as_json(rows))
-    else:
-        show(lines)
+    tell("benchmarks.control", lines, write, rows if machine_readable else None)
 
 
 if __name__ == "__main__":

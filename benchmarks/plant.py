@@ -23,16 +23,16 @@ import click
 import msgspec
 import numpy as np
 
+from benchmarks.options import json_option, write_option
 from benchmarks.plant_figures import save_all
 from benchmarks.plant_runs import plant
-from benchmarks.section import markdown, show, write_section
+from benchmarks.section import markdown, tell
 from plant_emulator.emulator import PERIOD_NS, Emulator
 from plant_emulator.plant import Plant
 from plant_emulator.recording import TruthRecorder
 from plant_emulator.scenario import load_scenario
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.vehicle_node import VehicleNode
-from tcs_hil.hil.machine import describe_machine
 from tcs_hil.signals import TorqueLimits
 
 PERIOD_S = PERIOD_NS * 1e-9
@@ -151,24 +151,18 @@ def measure() -> list[Figure]:
 
 
 @click.command()
-@click.option("--json", "json_output", is_flag=True, help="Print JSON.")
-@click.option("--write", type=click.Path(path_type=Path), help="Put the table into this page.")
+@json_option
+@write_option
 @click.option("--figures", type=click.Path(path_type=Path), help="Write the pictures here.")
-def main(json_output: bool, write: Path | None, figures: Path | None) -> None:
+def main(machine_readable: bool, write: Path | None, figures: Path | None) -> None:
     """Measure the plant emulator, or draw its verification."""
     if figures is not None:
         save_all(figures, click.echo)
         return
     measured = measure()
-    if json_output:
-        document = {"machine": describe_machine(), "figures": measured}
-        click.echo(msgspec.json.encode(document).decode())
-        return
     rows = [[figure.name, f"{figure.value:.3g} {figure.unit}".strip()] for figure in measured]
     table = markdown(("what", "figure"), rows)
-    show(table)
-    if write is not None:
-        write_section(write, "benchmarks.plant", table)
+    tell("benchmarks.plant", table, write, measured if machine_readable else None)
 
 
 if __name__ == "__main__":

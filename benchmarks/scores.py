@@ -1,12 +1,7 @@
-"""Scores as cells of a table and as JSON."""
+"""Scores as cells of a table."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import msgspec
-
-from tcs_hil.hil.machine import describe_machine
 from tcs_hil.hil.metrics import Score
 
 HEADINGS = ("RMSE", "peak", "speed gained / ideal", "mean abs dT/dt, Nm/s", "limit cycle")
@@ -22,8 +17,3 @@ def cells(score: Score) -> list[str]:
         f"{slip.chatter_nmps:.0f}",
         f"{cycle.frequency_hz:.0f} Hz" if cycle else "none",
     ]
-
-
-def as_json(rows: Sequence[object]) -> bytes:
-    """Rows and the machine that made them; NaN becomes null."""
-    return msgspec.json.encode({"machine": describe_machine(), "rows": rows})

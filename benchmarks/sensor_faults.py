@@ -16,7 +16,8 @@ from typing import NamedTuple
 import click
 import msgspec
 
-from benchmarks.section import markdown, show, write_section
+from benchmarks.options import write_option
+from benchmarks.section import markdown, tell
 from plant_emulator.faults import Fault
 from plant_emulator.scenario import Scenario, load_scenario
 from tcs_hil.cli.progress import progress_bar
@@ -86,15 +87,11 @@ def table() -> Iterator[list[str]]:
 
 
 @click.command()
-@click.option(
-    "--write", type=click.Path(dir_okay=False, path_type=Path), help="Page to put the table into."
-)
+@write_option
 def main(write: Path | None) -> None:
     """Let every sensor fail in every way, and tell when it was found."""
     lines = markdown(("fault", *SCENARIOS.values(), "named"), table())
-    if write:
-        write_section(write, "benchmarks.sensor_faults", lines)
-    show(lines)
+    tell("benchmarks.sensor_faults", lines, write)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ machine that is shared or simulated are printed and not judged.
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 import tempfile
@@ -21,7 +20,8 @@ from pathlib import Path
 
 import click
 
-from benchmarks.section import markdown, show, write_section
+from benchmarks.options import json_option, write_option
+from benchmarks.section import markdown, tell
 from benchmarks.soak_samples import Footprint, Sample, Verdict, Watcher, judge
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.errors import TcsError
@@ -170,15 +170,15 @@ def conclusion(samples: Sequence[Sample], verdict: Verdict, warm_up_s: float) ->
 @click.option("--interface", default="auto", show_default=True)
 @click.option("--channel", default="vcan0", show_default=True)
 @click.option("--controller", default="kmpc", show_default=True)
-@click.option("--json", "json_output", is_flag=True, help="Print every sample as JSON.")
-@click.option("--write", type=click.Path(path_type=Path), help="Put the table into this page.")
+@json_option
+@write_option
 def main(
     *,
     minutes: float,
     interface: str,
     channel: str,
     controller: str,
-    json_output: bool,
+    machine_readable: bool,
     write: Path | None,
 ) -> None:
     """Soak the service; exit status 1 if it is not flat."""
@@ -188,12 +188,7 @@ def main(
     warm_up_s = WARM_UP_RATIO * minutes * 60.0
     verdict = judge(samples, warm_up_s)
     lines = [*table(samples), *conclusion(samples, verdict, warm_up_s)]
-    if write is not None:
-        write_section(write, "benchmarks.soak", lines)
-    if json_output:
-        click.echo(json.dumps([sample.as_dict() for sample in samples]))
-    else:
-        show(lines)
+    tell("benchmarks.soak", lines, write, samples if machine_readable else None)
     sys.exit(not verdict.flat)
 
 

@@ -152,7 +152,6 @@ class Supervisor:
         self._before = TcsState.INIT  # state of the tick before
         self._verdict = Verdict(TcsState.INIT, FaultCode.NONE, RELEASE)
         self._situation = CALM
-        self._reason: Rule | None = None
         self._trusted_ticks = 0  # without a reason, or followed slowly for one
         self._calm_ticks = 0  # without a reason
         self._silent_ticks = 0

@@ -62,6 +62,14 @@ def test_it_leaves_init_after_ten_good_ticks_and_releases_until_standby_was_show
     assert {v.fault_code for v in verdicts} == {FaultCode.NONE}
 
 
+def test_before_its_first_tick_it_holds_nobody_back(supervisor: Supervisor) -> None:
+    assert supervisor.limiting() == (INIT, FaultCode.NONE, RELEASE)
+
+
+def test_our_own_code_may_break_before_anything_was_judged(supervisor: Supervisor) -> None:
+    assert supervisor.internal_error() == (FAULT, FaultCode.INTERNAL_ERROR, RELEASE)
+
+
 def test_it_waits_in_init_for_inputs_and_says_so(supervisor: Supervisor) -> None:
     states(supervisor, GOOD, 9)
     verdict = supervisor.judge(measurement(driver_age_s=math.inf))
@@ -366,6 +374,15 @@ def test_five_overruns_in_a_row_degrade(
 ) -> None:
     for _ in range(overruns):
         running.sent(overran=True)
+    assert running.judge(GOOD).state is state
+
+
+@pytest.mark.parametrize(("overruns", "state"), [(4, STANDBY), (5, DEGRADED)])
+def test_a_tick_in_time_begins_the_count_of_overruns_anew(
+    running: Supervisor, overruns: int, state: TcsState
+) -> None:
+    for overran in (*[True] * 4, False, *[True] * overruns):
+        running.sent(overran)
     assert running.judge(GOOD).state is state
 
 

@@ -18,9 +18,13 @@ from tcs_hil.hil.section import markdown, replace_section
 __all__ = ["markdown", "show", "tell", "write_section"]
 
 
-def write_section(path: Path, name: str, lines: Iterable[str]) -> None:
-    """Replace or append the section of the benchmark ``name`` with the command that runs now."""
-    replace_section(path, name, shlex.join(("python", "-m", name, *sys.argv[1:])), lines)
+def write_section(path: Path, name: str, lines: Iterable[str], part: str | None = None) -> None:
+    """Replace or append the section of the benchmark ``name`` with the command that runs now.
+
+    A benchmark may keep several sections in a page, each ``part`` by its name.
+    """
+    section = name if part is None else f"{name} {part}"
+    replace_section(path, section, shlex.join(("python", "-m", name, *sys.argv[1:])), lines)
 
 
 def tell(

@@ -47,7 +47,7 @@ class Outputs:
     "--suite",
     "suites",
     multiple=True,
-    help="A folder of the library, `all`, or the campaign `faults`; may be repeated.",
+    help="A folder of the library, `all`, `faults` or `fault-families`; may be repeated.",
 )
 @click.option(
     "--mode",

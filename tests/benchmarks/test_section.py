@@ -42,5 +42,16 @@ def test_a_second_section_goes_below_what_is_there(tmp_path: Path) -> None:
     assert "one\n" not in text
 
 
+def test_a_part_of_a_benchmark_has_a_section_of_its_own(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    write_section(page, "benchmarks.x", ["whole"])
+    write_section(page, "benchmarks.x", ["old"], part="vcan0")
+    write_section(page, "benchmarks.x", ["part"], part="vcan0")
+    text = page.read_text()
+    assert "whole" in text
+    assert "<!-- begin benchmarks.x vcan0 -->" in text
+    assert "old" not in text
+
+
 def test_a_table_lines_figures_up_to_the_right() -> None:
     assert markdown(["a", "b"], [["x", "1"]]) == ["| a | b |", "| --- | --: |", "| x | 1 |"]

@@ -8,21 +8,23 @@ from string import ascii_lowercase
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.hil.faults.cell import Cell, Promise
 from tcs_hil.hil.faults.judge import ABOVE, BACK, BEYOND, DETECT, MS, NAMED, REACT, RISE
-from tcs_hil.hil.faults.suite import LAWS
 from tcs_hil.hil.judging.verdict import Finding, Verdict
 from tcs_hil.hil.suite.result import Result
 
 NOTHING = "-"
 
-HEADINGS = ("fault", "owed", "named", *LAWS, "passed")
+
+def headings(results: Sequence[Result]) -> list[str]:
+    """Of the columns of `rows`."""
+    return ["fault", "owed", "named", *_laws(results), "passed"]
 
 
 def rows(cells: Sequence[Cell], results: Sequence[Result]) -> Iterator[list[str]]:
     """One row per cell, in their order."""
-    letters = _letters(cells)
+    letters, driven = _letters(cells), _laws(results)
     for cell in cells:
         of_cell = [result for result in results if result.name.startswith(f"{cell.name}/")]
-        laws = ([each for each in of_cell if each.controller == law] for law in LAWS)
+        laws = ([each for each in of_cell if each.controller == law] for law in driven)
         passed = sum(each.verdict is Verdict.PASSED for each in of_cell)
         yield [
             f"{' and '.join(f'`{target}`' for target in cell.targets)} {cell.family}",
@@ -33,12 +35,12 @@ def rows(cells: Sequence[Cell], results: Sequence[Result]) -> Iterator[list[str]
         ]
 
 
-def summary(cells: Sequence[Cell], results: Sequence[Result]) -> str:
-    """The campaign in a few sentences."""
+def summary(cells: Sequence[Cell], results: Sequence[Result], where: str) -> str:
+    """The campaign in a few sentences; ``where`` it was driven, and at which pace."""
     passed = sum(result.verdict is Verdict.PASSED for result in results)
     owed = sum(cell.promise.within_s is not None for cell in cells)
     return (
-        f"{len(cells)} faults, {owed} of which must be found, make {len(results)} runs: "
+        f"{len(cells)} faults, {owed} of which must be found, make {len(results)} runs {where}: "
         f"{passed} passed, {len(results) - passed} did not. In no tick of any run was a limit "
         f"more than {_worst(results, ABOVE):.3f} Nm above the request or did it rise more than "
         f"{_worst(results, BEYOND):.3f} Nm beyond its rate, which is half a step and a step of "
@@ -47,9 +49,22 @@ def summary(cells: Sequence[Cell], results: Sequence[Result]) -> str:
     )
 
 
+def shortfalls(results: Sequence[Result]) -> list[str]:
+    """Every run that did not pass, and why."""
+    return [
+        f"- `{result.name}` {result.verdict}: {result.reason}"
+        for result in results
+        if result.verdict is not Verdict.PASSED
+    ]
+
+
 def legend(cells: Sequence[Cell]) -> list[str]:
     """What the letters of `rows` stand for."""
     return [f"- *{letter}*: {why}." for why, letter in _letters(cells).items()]
+
+
+def _laws(results: Sequence[Result]) -> list[str]:
+    return list(dict.fromkeys(result.controller for result in results))
 
 
 def _letters(cells: Sequence[Cell]) -> dict[str, str]:

@@ -9,7 +9,7 @@ from msgspec import structs
 
 from plant_emulator.scenario import list_scenarios, load_scenario
 from tcs_hil.errors import ConfigError
-from tcs_hil.hil.faults.suite import SUITE, fault_cases
+from tcs_hil.hil.faults.suite import FAMILIES, SUITE, family_cases, fault_cases
 from tcs_hil.hil.suite.case import Case
 from tcs_hil.service.settings import ServiceConfig
 
@@ -17,7 +17,10 @@ ALL = "all"
 OWN = "own"
 """The suite of scenarios that are not shipped."""
 
-GENERATED: dict[str, Callable[[ServiceConfig], list[Case]]] = {SUITE: fault_cases}
+GENERATED: dict[str, Callable[[ServiceConfig], list[Case]]] = {
+    SUITE: fault_cases,
+    FAMILIES: family_cases,
+}
 """Suites that no folder holds: from the service's configuration to the cases."""
 
 

@@ -9,7 +9,14 @@ import pytest
 from plant_emulator import faults
 from tcs_hil.hil.faults.cell import Cell
 from tcs_hil.hil.faults.manoeuvres import MANOEUVRES
-from tcs_hil.hil.faults.suite import LAWS, fault_cases, fault_cells
+from tcs_hil.hil.faults.suite import (
+    FAMILY_LAWS,
+    LAWS,
+    family_cases,
+    family_cells,
+    fault_cases,
+    fault_cells,
+)
 from tcs_hil.hil.suite.case import check_cases, distinct, with_law
 from tcs_hil.hil.suite.library import suite_cases
 from tcs_hil.service.settings import ServiceConfig
@@ -59,6 +66,23 @@ def test_the_suite_is_one_that_can_be_asked_for_by_name_and_by_law() -> None:
     cases = suite_cases("faults", CONFIG)
     only = distinct(with_law(case, "pi", None) for case in cases)
     assert len(only) == len(cases) // len(LAWS)
+
+
+def test_the_small_campaign_has_each_family_once_and_each_kind_of_fault() -> None:
+    families = family_cells()
+    assert sorted(cell.family for cell in families) == sorted({cell.family for cell in CELLS})
+    assert {cell.kind for cell in families} == {cell.kind for cell in CELLS}
+    assert len(family_cases(CONFIG)) == len(families) * len(FAMILY_LAWS)
+
+
+def test_the_small_campaign_takes_what_must_be_found_where_a_family_has_it() -> None:
+    owing = {cell.family for cell in CELLS if cell.promise.within_s is not None}
+    assert {cell.family for cell in family_cells() if cell.promise.within_s is not None} == owing
+
+
+def test_the_small_campaign_is_part_of_the_whole_one() -> None:
+    whole = {case.name: case for case in suite_cases("faults", CONFIG)}
+    assert all(whole[case.name] == case for case in suite_cases("fault-families", CONFIG))
 
 
 @pytest.mark.parametrize("cell", CELLS, ids=lambda cell: cell.name)

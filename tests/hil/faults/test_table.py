@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.hil.faults.cell import Cell
 from tcs_hil.hil.faults.promises import lost, nothing
-from tcs_hil.hil.faults.table import HEADINGS, legend, rows, summary
+from tcs_hil.hil.faults.table import headings, legend, rows, shortfalls, summary
 from tcs_hil.hil.judging.verdict import Finding, Verdict
 from tcs_hil.hil.suite.result import Result
 
@@ -45,7 +47,7 @@ def result(
 
 def cells_of(cell: Cell, results: list[Result]) -> dict[str, str]:
     (row,) = rows([cell], results)
-    return dict(zip(HEADINGS, row, strict=True))
+    return dict(zip(headings(results), row, strict=True))
 
 
 def test_a_law_is_shown_by_its_worse_manoeuvre() -> None:
@@ -70,6 +72,23 @@ def test_what_is_not_owed_points_to_its_reason() -> None:
 
 
 def test_the_summary_counts_what_did_not_pass() -> None:
-    failed = [result(LOST, 1, 4.0, 1.0), result(UNREAD, 1, None, 0.0)]
-    text = summary([LOST, UNREAD], failed)
-    assert text.startswith("2 faults, 1 of which must be found, make 2 runs: 2 passed, 0 did not.")
+    failed = [msgspec.structs.replace(result(LOST, 1, 4.0, 1.0), verdict=Verdict.BLOCKED)]
+    failed.append(result(UNREAD, 1, None, 0.0))
+    text = summary([LOST, UNREAD], failed, "in lockstep")
+    assert text.startswith(
+        "2 faults, 1 of which must be found, make 2 runs in lockstep: 1 passed, 1 did not."
+    )
+
+
+def test_what_did_not_pass_is_listed_with_its_reason() -> None:
+    good = result(LOST, 1, 4.0, 1.0)
+    blocked = msgspec.structs.replace(good, verdict=Verdict.BLOCKED, error="no answer to tick 7")
+    assert shortfalls([good]) == []
+    assert shortfalls([good, blocked]) == [f"- `{good.name}` blocked: no answer to tick 7"]
+
+
+def test_only_the_laws_that_were_driven_have_a_column() -> None:
+    both = [result(LOST, 1, 4.0, 1.0, law="kmpc"), result(LOST, 1, 4.0, 1.0, law="nmpc")]
+    assert headings(both)[3:] == ["kmpc", "nmpc", "passed"]
+    (row,) = rows([LOST], both)
+    assert row[-1] == "2 of 2"

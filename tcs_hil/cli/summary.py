@@ -45,6 +45,8 @@ def print_summary(summary: Summary) -> None:
         f"lost frames {summary.lost_frames}, E2E errors {summary.e2e_errors}"
     )
     click.echo(f"states: {_counts(summary.states)}; solver: {_counts(summary.statuses)}")
+    if summary.advice:
+        click.echo(summary.advice)
 
 
 def _cells(times: Percentiles | None) -> list[str]:

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 
 from tcs_hil.control.protocol import SolveStatus
 from tcs_hil.runtime.times import both_wheels, times_us, was_asked
-from tcs_hil.signals import TcsState
+from tcs_hil.signals import BusCondition, TcsState
+
+NOTHING_HEARD = (
+    "bit rate mismatch? The controller has met errors and not one good frame: compare the bit rate "
+    "with the other nodes' (ip -details link), then look for wiring, termination and a node that "
+    "acknowledges"
+)
+"""A wrong bit rate has no flag of its own.  Source: ISO 11898-1, fault confinement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +44,7 @@ class Summary:
 
     The distributions are those of ``times.times_us``, None where no tick had a
     value.  Statuses and solve times are of the wheels whose law was asked.
+    ``advice`` is what is likely wrong with the bus, empty where nothing tells.
     """
 
     ticks: int
@@ -56,6 +64,7 @@ class Summary:
     input_age: Percentiles | None
     statuses: dict[str, int]
     states: dict[str, int]
+    advice: str
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain dicts, lists and numbers, fit for JSON."""
@@ -84,7 +93,14 @@ def summarise(ticks: NDArray[np.void]) -> Summary:
         input_age=times["input_age"],
         statuses=_counts(both_wheels(ticks, "status_{}")[asked], SolveStatus),
         states=_counts(ticks["state"], TcsState),
+        advice=NOTHING_HEARD if _only_errors(ticks) else "",
     )
+
+
+def _only_errors(ticks: NDArray[np.void]) -> bool:
+    """Whether the controller fell ill on a bus from which no frame ever came."""
+    ill = (BusCondition.ERROR_PASSIVE, BusCondition.BUS_OFF)
+    return not _newest(ticks, "rx_frames") and bool(np.isin(ticks["bus_condition"], ill).any())
 
 
 def _newest(ticks: NDArray[np.void], counter: str) -> int:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 from runtime.fakes import PERIOD_NS, RUN, insight, made_pass
 
+from tcs_hil.canbus.frame import PortCounters
 from tcs_hil.cli.report import command
 from tcs_hil.runtime.record import record
 from tcs_hil.runtime.recorder import FlightRecorder
+from tcs_hil.signals import BusCondition
 
 TICKS = 20
 
@@ -38,6 +41,14 @@ def test_the_table_names_the_run_and_what_was_lost(recording: Path) -> None:
     output = report(recording).output
     assert output.startswith("nmpc (python) on virtual:test, a test\n")
     assert "lost frames 4, E2E errors 5" in " ".join(output.split())
+
+
+def test_a_bus_that_was_never_understood_is_told_with_its_likely_cause(tmp_path: Path) -> None:
+    made = made_pass()
+    deaf = made._replace(measurement=replace(made.measurement, bus=BusCondition.ERROR_PASSIVE))
+    with FlightRecorder(tmp_path / "flight", RUN, 100) as recorder:
+        recorder.write(record(deaf, insight()._replace(counters=PortCounters(error_frames=200))))
+    assert "bit rate mismatch?" in report(tmp_path / "flight").output
 
 
 def test_the_worst_ticks_are_listed_only_when_asked_for(recording: Path) -> None:

@@ -12,12 +12,13 @@ import pytest
 from msgspec.structs import replace
 from runtime.fakes import COMMAND, PERIOD_NS, RUN, TRACE, insight, made_pass
 
+from tcs_hil.canbus.frame import PortCounters
 from tcs_hil.control.protocol import Proposal, SolveStatus
 from tcs_hil.runtime.record import Record, record
 from tcs_hil.runtime.recorder import FlightRecorder
 from tcs_hil.runtime.recording import read
 from tcs_hil.runtime.summary import Summary, summarise
-from tcs_hil.signals import TcsState
+from tcs_hil.signals import BusCondition, TcsState
 
 Summarised = Callable[[list[Record]], Summary]
 
@@ -77,6 +78,26 @@ def test_overruns_skips_and_failures_are_counted(summarised: Summarised) -> None
     assert (summary.bus_errors, summary.lost_frames, summary.e2e_errors) == (6, 4, 5)
 
 
+@pytest.mark.parametrize(
+    ("condition", "heard", "told"),
+    [
+        (BusCondition.ERROR_PASSIVE, 0, True),
+        (BusCondition.BUS_OFF, 0, True),
+        (BusCondition.ERROR_PASSIVE, 1, False),
+        (BusCondition.SEND_FAILED, 0, False),
+        (BusCondition.OK, 0, False),
+    ],
+)
+def test_errors_without_a_single_good_frame_look_like_another_bit_rate(
+    summarised: Summarised, condition: BusCondition, heard: int, told: bool
+) -> None:
+    made = made_pass()
+    ill = made._replace(measurement=replace(made.measurement, bus=condition))
+    met = insight()._replace(counters=PortCounters(rx=heard))
+    advice = summarised([record(ill, met), record(made_pass(), met)]).advice
+    assert advice.startswith("bit rate mismatch?") is told
+
+
 def test_states_and_statuses_are_counted_by_name(summarised: Summarised) -> None:
     failed = TRACE._replace(
         proposals=(Proposal(51.0, SolveStatus.FAILED), Proposal(52.0, SolveStatus.OK))
@@ -108,4 +129,5 @@ def test_a_summary_is_json(summarised: Summarised) -> None:
 def test_an_empty_recording_has_an_empty_summary(summarised: Summarised) -> None:
     summary = summarised([])
     assert summary.ticks == 0
+    assert not summary.advice
     assert summary.wake_jitter is None

@@ -24,6 +24,7 @@ from .drive import Drive
 
 LIMIT_ID = 0x090
 PASSIVE = error_frame(0x004, b"\0\x30")
+STUFF_ERROR = error_frame(0x008 | 0x080, b"\0\0\x04")  # a violation of the protocol, on the wire
 BUS_OFF, RESTARTED = error_frame(0x040), error_frame(0x100)
 
 pytestmark = pytest.mark.simulated_time
@@ -111,6 +112,21 @@ def test_bus_off_is_a_fault_until_the_controller_has_restarted(
         stranger.send(RESTARTED)
     ticks = drive.await_active(after=newest(drive))
     assert ticks["bus_condition"][-1] == BusCondition.OK
+
+
+def test_errors_from_the_start_without_a_good_frame_are_reported_as_another_bit_rate(
+    drive: Drive, stranger: can.BusABC
+) -> None:
+    service = drive.start_service()
+    drive.await_ticks(lambda ticks: len(ticks) > 0, "a tick")
+    for _ in range(200):  # what a controller reports that cannot read a single frame
+        stranger.send(STUFF_ERROR)
+    stranger.send(PASSIVE)
+    ticks = drive.await_condition(BusCondition.ERROR_PASSIVE)
+    assert (ticks["rx_frames"][-1], ticks["bus_errors"][-1]) == (0, 201)
+    assert not ticks["failed"].any()
+    service.end()
+    assert "bit rate mismatch?" in service.log.read_text()
 
 
 @contextmanager

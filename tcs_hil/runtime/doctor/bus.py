@@ -17,12 +17,20 @@ class Timing(msgspec.Struct, frozen=True):
     bitrate: int = 0
 
 
+class ErrorCounters(msgspec.Struct, frozen=True):
+    """How ill a CAN controller is, sending and receiving; 128 of one makes it error-passive."""
+
+    tx: int = 0
+    rx: int = 0
+
+
 class Controller(msgspec.Struct, frozen=True):
     """What a CAN controller says of itself; empty for a virtual interface."""
 
     state: str = ""
     restart_ms: int = 0
     bittiming: Timing = Timing()
+    berr_counter: ErrorCounters = ErrorCounters()
 
 
 class Kind(msgspec.Struct, frozen=True):
@@ -67,6 +75,7 @@ def _link(machine: Machine, channel: str) -> Link | None:
     return next((link for link in links if link.ifname == channel), None)
 
 
+_MISMATCH = "bit rate mismatch? compare the other nodes', then check wiring and termination"
 _SET = f"sudo ip link set {{}} up type can bitrate {BITRATE} restart-ms 100"
 
 
@@ -84,15 +93,17 @@ def _bring_up(channel: str, link: Link) -> str:
 
 
 def _controller(what: str, channel: str, controller: Controller) -> Finding:
-    bitrate, state = controller.bittiming.bitrate, controller.state
+    bitrate, state, errors = controller.bittiming.bitrate, controller.state, controller.berr_counter
     found = f"{bitrate} bit/s, {state}"
+    ill = f"{found}, errors sending {errors.tx}, receiving {errors.rx}"
     if state == "BUS-OFF":
-        return fail(what, found, f"sudo ip link set {channel} type can restart")
+        restart = f"then sudo ip link set {channel} type can restart"
+        return fail(what, ill, f"{_MISMATCH}; {restart}")
     if bitrate != BITRATE:
         again = f"sudo ip link set {channel} down && {_SET.format(channel)}"
         return warn(what, f"{found}; the bus is laid out for {BITRATE}", again)
     if state != "ERROR-ACTIVE":
-        return warn(what, found, "check wiring, termination and the bit rate of the others")
+        return warn(what, ill, _MISMATCH)
     if not controller.restart_ms:
         again = f"sudo ip link set {channel} down && {_SET.format(channel)}"
         return warn(what, f"{found}; stays off after bus-off", again)

@@ -36,6 +36,8 @@ def test_a_healthy_controller_is_fine() -> None:
         (can0("BUS-OFF"), FAIL, "sudo ip link set can0 type can restart"),
         (can0(bitrate=250_000), WARN, "bitrate 500000"),
         (can0("ERROR-PASSIVE"), WARN, "termination"),
+        (can0("ERROR-WARNING"), WARN, "bit rate mismatch?"),
+        (can0("BUS-OFF"), FAIL, "bit rate mismatch?"),
         (can0(restart_ms=0), WARN, "restart-ms 100"),
         (seen("can0", "can", "NOARP"), FAIL, "set can0 up type can bitrate 500000"),
         (seen("vcan0", "vcan", "NOARP"), FAIL, "sudo ip link set vcan0 up"),
@@ -46,6 +48,12 @@ def test_every_trouble_comes_with_what_mends_it(
 ) -> None:
     assert finding.verdict is verdict
     assert remedy in finding.remedy
+
+
+def test_an_ill_controller_says_whether_it_fails_to_send_or_to_read() -> None:
+    data = {"state": "ERROR-PASSIVE", "bittiming": {"bitrate": 500_000}}
+    found = seen("can0", "can", "UP", **data, berr_counter={"tx": 3, "rx": 135}).found
+    assert found == "500000 bit/s, ERROR-PASSIVE, errors sending 3, receiving 135"
 
 
 def test_a_virtual_interface_has_no_controller_to_be_ill() -> None:

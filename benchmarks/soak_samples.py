@@ -90,7 +90,7 @@ class Watcher:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One look at everything, ``at_s`` after the service's first tick."""
+    """One look at everything, ``at_s`` after the service first heard the car."""
 
     at_s: float
     service: Footprint

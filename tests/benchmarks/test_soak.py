@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from runtime.fakes import PERIOD_NS, RUN, insight, made_pass
 
-from benchmarks.soak import scenario, table
+from benchmarks.soak import conclusion, scenario, table
 from benchmarks.soak_samples import Footprint, Sample, Ticking, Watcher, judge
 from plant_emulator.scenario import load_scenario
 from tcs_hil.runtime.record import record
@@ -86,6 +86,12 @@ def test_the_hill_is_a_scenario_that_launches_every_half_minute(tmp_path: Path) 
     path.write_text(scenario(65.0))
     requests = load_scenario(str(path)).driver.request
     assert [time_s for time_s, _ in requests if time_s % 30.0 == 1.0] == [1.0, 31.0, 61.0]
+
+
+def test_the_rate_is_that_of_the_ticks_between_the_looks() -> None:
+    samples = hour((5000,) * 1801)  # 1000 ticks every two seconds
+    text = conclusion(samples, judge(samples, 0.0), 0.0)[1]
+    assert "1801000 ticks in 60.0 minutes, 500.0 a second" in text
 
 
 def test_the_table_adds_up_what_lies_between_two_rows() -> None:

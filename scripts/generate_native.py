@@ -41,7 +41,7 @@ def wheel_model() -> list[Any]:
 
 
 def driveline_model() -> list[Any]:
-    """One Runge-Kutta step of the default law's state, and the slip ratio; with derivatives."""
+    """One Runge-Kutta step of the default law's state, alone and with derivatives; slip ratio."""
     x, torque = ca.SX.sym("x", driveline.NX), ca.SX.sym("u")
     duration_s, disturbance_n = ca.SX.sym("h"), ca.SX.sym("dF")
     reference = ca.SX.sym("kappa_ref")
@@ -49,11 +49,11 @@ def driveline_model() -> list[Any]:
     car_fields, car = symbolic(Vehicle)
     parameters = ca.vertcat(reference, line_fields, car_fields)
     belief: Any = SimpleNamespace(slip_reference=reference, default=SimpleNamespace(driveline=line))
+    arguments = [x, torque, ca.vertcat(duration_s, disturbance_n), parameters]
     after = driveline.advance(x, torque, duration_s, disturbance_n, belief, car)
     return [
-        step(
-            "driveline_step", [x, torque, ca.vertcat(duration_s, disturbance_n), parameters], after
-        ),
+        function("driveline_flow", arguments, [after]),
+        step("driveline_step", arguments, after),
         slip("driveline_slip", x, parameters, car),
     ]
 

@@ -11,33 +11,37 @@ from numpy.typing import NDArray
 from tcs_hil.control.backend import chosen_backend
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.settings import ControlSettings
-from tcs_hil.model.bank import KoopmanBank, Share
+from tcs_hil.model.bank import KoopmanBank
+from tcs_hil.model.observables import Sample
 from tcs_hil.signals import ControllerKind
 
 FloatArray = NDArray[np.float64]
 
 
 class BankCore(Protocol):
-    """The bands around a speed over x of `bank_problem`; arrays are valid until the next call."""
+    """The state of `bank_problem`, and the one or two bands in charge of it, mixed by weight."""
 
-    def settle(self, shares: Sequence[Share]) -> None:
-        """From now on these one or two bands predict and plan, mixed by weight."""
+    x: FloatArray  # (NX,), rolled forward and planned from
+
+    def observe(
+        self, now: Sample, vehicle_speed_mps: float, integral_s: float, disturbance_radps: float
+    ) -> float:
+        """Set x to what is seen now, with the bands around this speed in charge.
+
+        Returns the wheel speed one period later, in rad/s, without torque or disturbance.
+        """
         ...
 
-    def wheel_speed_after(self, state: FloatArray) -> float:
-        """Wheel speed in rad/s one period after a state (NX,), without torque or disturbance."""
+    def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
+        """Carry x through torques, the first for a part of a period; linear within a period."""
         ...
 
-    def after(self, state: FloatArray, torque_nm: float, periods: float) -> FloatArray:
-        """State (NX,) after ``periods`` in (0, 1] periods of a torque; linear within a period."""
-        ...
-
-    def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
-        """Best torques (N,) in Nm within [0, torque_ref_nm] from a state (NX,) on."""
+    def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+        """Best torques (N,) in Nm within [0, torque_ref_nm] from x on; valid until the next."""
         ...
 
     def reset(self) -> None:
-        """Forget the last plans."""
+        """Forget the last sample and the last plans."""
         ...
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Protocol
 
 from tcs_hil.control.break_away import BreakAway
@@ -10,18 +11,22 @@ from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
 from tcs_hil.control.screening import clamp, settled
-from tcs_hil.control.sent import FloatArray, Predicts, SentTorques, roll_forward
+from tcs_hil.control.sent import SentTorques
 
 
-class DelayedOptimiser(Predicts, Protocol):
-    """A law that plans from a state of its own prediction model."""
+class DelayedOptimiser(Protocol):
+    """A law that plans from the state of its own prediction model, in these three steps."""
 
-    def state(self, wheel: WheelState, integral_s: float) -> FloatArray:
-        """State (nx,) of the model at the instant ``wheel`` describes; called once a tick."""
+    def observe(self, wheel: WheelState, integral_s: float) -> None:
+        """The state is the one at the instant ``wheel`` describes; called once a tick."""
         ...
 
-    def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
-        """Torques in Nm within [0, torque_ref_nm] from ``state`` on, after ``last_torque_nm``."""
+    def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
+        """Carry the state through torques, the first for a part of a period, then one each."""
+        ...
+
+    def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+        """Torques in Nm within [0, torque_ref_nm] from the state on, after ``last_torque_nm``."""
         ...
 
     def reset(self) -> None:
@@ -75,15 +80,14 @@ class CompensatedController:
         self._awake = False
 
     def _solve(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
-        measured = self._optimiser.state(wheel, self._weighed_integral_s(wheel.loop_delay_s))
-        delay_periods = wheel.loop_delay_s / self._period_s
-        state = roll_forward(self._optimiser, measured, self._sent, delay_periods)
+        self._optimiser.observe(wheel, self._weighed_integral_s(wheel.loop_delay_s))
+        self._optimiser.roll_forward(*self._sent.pending(wheel.loop_delay_s / self._period_s))
         ceiling_nm = self._break_away.ceiling_nm(wheel, torque_ref_nm, self._sent.newest_nm)
-        plan = self._optimiser.plan(state, self._sent.newest_nm, ceiling_nm)
+        plan = self._optimiser.plan(self._sent.newest_nm, ceiling_nm)
         if plan.status is SolveStatus.FAILED:
             self._optimiser.reset()  # what failed is no warm start
             return Proposal(torque_ref_nm, plan.status, plan.iterations)
-        torque_nm = self._entered(wheel, clamp(float(plan.inputs[0]), ceiling_nm), ceiling_nm)
+        torque_nm = self._entered(wheel, clamp(plan.inputs.item(0), ceiling_nm), ceiling_nm)
         self._integral.advance(wheel.slip_ratio, torque_nm, ceiling_nm)
         return Proposal(torque_nm, plan.status, plan.iterations, plan.next_nm)
 

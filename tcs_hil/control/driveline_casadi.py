@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tcs_hil.control.driveline_core import Situation
 from tcs_hil.control.driveline_transcription import NX, advance_function, plan_function
 from tcs_hil.control.least_squares import Linearisation
 from tcs_hil.control.plan import Plan
@@ -26,19 +26,26 @@ class CasadiCore:
         self._flow = Flow(advance_function(settings, vehicle))
         self._problem = Linearisation(plan_function(settings, vehicle))
         self._max_iterations = tuning.max_iterations
+        self._period_s = settings.period_s
         self._guess = np.zeros(len(tuning.blocks))  # (N,), Nm
+        self.x = np.zeros(NX)
 
-    def after(
-        self, state: FloatArray, torque_nm: float, duration_s: float, disturbance_n: float
-    ) -> FloatArray:
-        """State (7,) after a duration; valid until the next call."""
-        return self._flow.after(state, torque_nm, duration_s, disturbance_n)
+    def roll_forward(
+        self, torques_nm: Sequence[float], first_periods: float, disturbance_n: float
+    ) -> None:
+        """Carry x through torques, the first for a part of a period, then one each."""
+        duration_s = first_periods * self._period_s
+        for torque_nm in torques_nm:
+            self.x[:] = self._flow.after(self.x, torque_nm, duration_s, disturbance_n)
+            duration_s = self._period_s
 
-    def plan(self, state: FloatArray, situation: Situation) -> Plan:
-        """Best torques (N,) in Nm from a state (7,) on."""
-        self._problem.start_from(state, *situation)
-        feasible = np.minimum(self._guess, situation.torque_ref_nm)
-        plan = minimise(self._problem, feasible, situation.torque_ref_nm, self._max_iterations)
+    def plan(
+        self, last_torque_nm: float, torque_ref_nm: float, disturbance_n: float, urgency: float
+    ) -> Plan:
+        """Best torques (N,) in Nm from x on."""
+        self._problem.start_from(self.x, torque_ref_nm, last_torque_nm, disturbance_n, urgency)
+        feasible = np.minimum(self._guess, torque_ref_nm)
+        plan = minimise(self._problem, feasible, torque_ref_nm, self._max_iterations)
         self._guess = np.append(plan.inputs[1:], plan.inputs[-1])
         return plan
 

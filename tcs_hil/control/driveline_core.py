@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,26 +17,27 @@ from tcs_hil.signals import ControllerKind
 FloatArray = NDArray[np.float64]
 
 
-class Situation(NamedTuple):
-    """What a plan depends on beside the state it starts from."""
-
-    torque_ref_nm: float
-    last_torque_nm: float
-    disturbance_n: float  # on the tyre force
-    urgency: float  # factor on the residuals of slip and integral
-
-
 class DrivelineCore(Protocol):
-    """The prediction model, and the optimisation over it; arrays are valid until the next call."""
+    """The state of `driveline_transcription`, its prediction and the optimisation over it.
 
-    def after(
-        self, state: FloatArray, torque_nm: float, duration_s: float, disturbance_n: float
-    ) -> FloatArray:
-        """State (7,) after a duration of at most 4 ms under a commanded motor torque."""
+    ``disturbance_n`` is added to the tyre's force.
+    """
+
+    x: FloatArray  # (7,), rolled forward and planned from
+
+    def roll_forward(
+        self, torques_nm: Sequence[float], first_periods: float, disturbance_n: float
+    ) -> None:
+        """Carry x through torques, the first for a part of a period, then one each."""
         ...
 
-    def plan(self, state: FloatArray, situation: Situation) -> Plan:
-        """Best torques (N,) in Nm from a state (7,) on, warm from the last plan."""
+    def plan(
+        self, last_torque_nm: float, torque_ref_nm: float, disturbance_n: float, urgency: float
+    ) -> Plan:
+        """Best torques (N,) in Nm from x on, warm from the last plan; valid until the next.
+
+        ``urgency`` is a factor on the residuals of slip and integral.
+        """
         ...
 
     def reset(self) -> None:

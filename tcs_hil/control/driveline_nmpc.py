@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
 
 from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.compensated import CompensatedController
-from tcs_hil.control.driveline_core import Situation, driveline_core
+from tcs_hil.control.driveline_core import FloatArray, driveline_core
 from tcs_hil.control.force_disturbance import ForceDisturbance
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
-
-FloatArray = NDArray[np.float64]
 
 SLOWEST_MPS = 0.2
 
@@ -33,41 +29,41 @@ class DrivelineOptimiser:
         self._vehicle = vehicle
         self._driveline = settings.default.driveline
         self._tuning = settings.default.nmpc
-        self._period_s = settings.period_s
         self._core = driveline_core(settings, vehicle)
         self._disturbance = ForceDisturbance(settings, vehicle)
 
-    def state(self, wheel: WheelState, integral_s: float) -> FloatArray:
-        """State x (7,) at the instant ``wheel`` describes."""
+    @property
+    def state(self) -> FloatArray:
+        """State x (7,) as the last call has left it; valid until the next."""
+        return self._core.x
+
+    def observe(self, wheel: WheelState, integral_s: float) -> None:
+        """The state is the one at the instant ``wheel`` describes; learns the disturbance."""
         force_n = self._disturbance.update(wheel)
         gear, shaft_nm = self._vehicle.gear_ratio, force_n * self._vehicle.wheel_radius_m
         steady_twist_rad = shaft_nm / self._driveline.shaft_stiffness_nmprad
-        return np.array(
-            (
-                wheel.slip_speed_mps,
-                wheel.wheel_speed_radps,
-                integral_s,
-                _or_else(wheel.motor_torque_nm, shaft_nm / gear),
-                wheel.motor_speed_radps / gear,
-                _or_else(wheel.shaft_twist_rad, steady_twist_rad),
-                force_n,
-            )
+        self._core.x[:] = (
+            wheel.slip_speed_mps,
+            wheel.wheel_speed_radps,
+            integral_s,
+            _or_else(wheel.motor_torque_nm, shaft_nm / gear),
+            wheel.motor_speed_radps / gear,
+            _or_else(wheel.shaft_twist_rad, steady_twist_rad),
+            force_n,
         )
 
-    def advance(self, state: FloatArray, torque_nm: float, periods: float) -> FloatArray:
-        """State (7,) after ``periods`` periods of a commanded motor torque."""
-        duration_s = periods * self._period_s
-        return self._core.after(state, torque_nm, duration_s, self._disturbance.value_n)
+    def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
+        """Carry the state through torques, the first for a part of a period, then one each."""
+        self._core.roll_forward(torques_nm, first_periods, self._disturbance.value_n)
 
-    def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+    def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm within [0, torque_ref_nm]."""
-        disturbance_n, urgency = self._disturbance.value_n, self._urgency(state)
-        situation = Situation(torque_ref_nm, last_torque_nm, disturbance_n, urgency)
-        return self._core.plan(state, situation)
+        disturbance_n, urgency = self._disturbance.value_n, self._urgency()
+        return self._core.plan(last_torque_nm, torque_ref_nm, disturbance_n, urgency)
 
-    def _urgency(self, state: FloatArray) -> float:
+    def _urgency(self) -> float:
         """Factor on the slip's residuals: 1, less at low speed, where slip is touchy."""
-        slip_speed_mps, omega_radps = state[:2].tolist()
+        slip_speed_mps, omega_radps = self._core.x[:2].tolist()
         speed_mps: float = omega_radps * self._vehicle.wheel_radius_m - slip_speed_mps
         soft = min(max(speed_mps, SLOWEST_MPS) / self._tuning.soft_speed_mps, 1.0)
         slow_mps, fast_mps = CALM_MPS

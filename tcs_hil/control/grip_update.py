@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tcs_hil.control.bank_kmpc import BankOptimiser
 from tcs_hil.control.plan import Plan, mixed
@@ -14,8 +14,6 @@ from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.bank import KoopmanBank
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.model.wheel import tyre_force_n
-
-FloatArray = NDArray[np.float64]
 
 FORGETTING = 0.03
 """Weight of the newest tick: 70 ms of memory."""
@@ -89,22 +87,23 @@ class GripOptimiser:
         self._grip = GripEstimate(vehicle, settings.period_s, self._least)
         self._weights = (1.0, 0.0)
 
-    def state(self, wheel: WheelState, integral_s: float) -> FloatArray:
-        """States (2, NX) of both at the instant ``wheel`` describes."""
+    def observe(self, wheel: WheelState, integral_s: float) -> None:
+        """The states of both are those at the instant ``wheel`` describes; learns the grip."""
         share = math.log(self._grip.update(wheel)) / math.log(self._least)
         self._weights = (1.0 - share, share)
-        return np.stack([law.state(wheel, integral_s) for law in self._optimisers])
+        for law in self._optimisers:
+            law.observe(wheel, integral_s)
 
-    def advance(self, state: FloatArray, torque_nm: float, periods: float) -> FloatArray:
-        """States (2, NX) after ``periods`` periods of a torque."""
-        pairs = zip(self._optimisers, state, strict=True)
-        return np.stack([law.advance(x, torque_nm, periods) for law, x in pairs])
+    def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
+        """Carry both states through torques, the first for a part of a period, then one each."""
+        for law in self._optimisers:
+            law.roll_forward(torques_nm, first_periods)
 
-    def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+    def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm of those that have a say."""
         voices = [
-            (law.plan(x, last_torque_nm, torque_ref_nm), weight)
-            for law, x, weight in zip(self._optimisers, state, self._weights, strict=True)
+            (law.plan(last_torque_nm, torque_ref_nm), weight)
+            for law, weight in zip(self._optimisers, self._weights, strict=True)
             if weight > 0.0
         ]
         return mixed([plan for plan, _ in voices], [weight for _, weight in voices])

@@ -5,19 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tcs_hil.control.bank_problem import NX, UNIT_NM, Band, bands_of
+from tcs_hil.control.bank_problem import UNIT_NM, Band, bands_of
 from tcs_hil.control.native_law import unpack_outcome
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
-from tcs_hil.model.bank import KoopmanBank, Share
-from tcs_hil.model.observables import NZ, Observable
+from tcs_hil.model.bank import KoopmanBank
+from tcs_hil.model.observables import Sample
 from tcs_hil.native import array_of, core, doubles
-
-FloatArray = NDArray[np.float64]
 
 
 class NativeBank:
@@ -26,46 +21,47 @@ class NativeBank:
     def __init__(self, settings: ControlSettings, bank: KoopmanBank) -> None:
         self._lib, self._struct = core().lib, core().ffi.new("bank *")
         bands = bands_of(bank, settings)
-        self._bands = [_struct_of(band) for band in bands]
-        self._struct.nx, self._struct.unit_nm = NX, UNIT_NM
-        self._struct.reduction_pull = bands[0].cost.reduction_pull
-        self._struct.change_pull = bands[0].cost.change_pull
-        self._x = array_of(self._struct.x)[:NX]
+        self._bands = core().ffi.new("band[]", len(bands))
+        for index, (centre_mps, band) in enumerate(zip(bank.centre_mps, bands, strict=True)):
+            self._bands[index].centre_mps = centre_mps
+            _set_up(self._bands + index, band)
+        self._describe(bank, bands[0])
+        self.x = array_of(self._struct.x)
         self._plan = array_of(self._struct.plan)[: settings.default.kmpc.horizon]  # (N,), Nm
-        a = array_of(self._struct.a)[: NX * NX].reshape(NX, NX)
-        self._wheel_speed_row = a[Observable.WHEEL_SPEED, :NZ]
 
-    def settle(self, shares: Sequence[Share]) -> None:
-        """From now on these one or two bands predict and plan, mixed by weight."""
-        first, weight = shares[0]
-        second, rest = shares[1] if len(shares) == 2 else (first, 0.0)
-        self._lib.bank_settle(self._struct, self._bands[first], weight, self._bands[second], rest)
+    def observe(
+        self, now: Sample, vehicle_speed_mps: float, integral_s: float, disturbance_radps: float
+    ) -> float:
+        """Set x to what is seen now; returns the wheel speed expected one period later."""
+        expected_radps: float = self._lib.bank_observe(
+            self._struct, vehicle_speed_mps, *now, integral_s, disturbance_radps
+        )
+        return expected_radps
 
-    def wheel_speed_after(self, state: FloatArray) -> float:
-        """Wheel speed in rad/s one period after a state (NX,), without torque or disturbance."""
-        return float(self._wheel_speed_row.dot(state[:NZ]))
+    def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
+        """Carry x through torques, the first for a part of a period; linear within a period."""
+        self._lib.bank_roll_forward(self._struct, torques_nm, len(torques_nm), first_periods)
 
-    def after(self, state: FloatArray, torque_nm: float, periods: float) -> FloatArray:
-        """State (NX,) after ``periods`` in (0, 1] periods; valid until the next call."""
-        self._x[:] = state
-        self._lib.bank_advance(self._struct, torque_nm, periods)
-        return self._x
-
-    def plan(self, state: FloatArray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
-        """Best torques (N,) in Nm within [0, torque_ref_nm]; valid until the next call."""
-        self._x[:] = state
+    def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+        """Best torques (N,) in Nm within [0, torque_ref_nm] from x on; valid until the next."""
         outcome = self._lib.bank_plan(self._struct, last_torque_nm, torque_ref_nm)
         return Plan(self._plan, *unpack_outcome(outcome))
 
     def reset(self) -> None:
-        """Forget the last plans."""
-        for band in self._bands:
-            self._lib.box_qp_reset(core().ffi.addressof(band, "qp"))
+        """Forget the last sample and the last plans."""
+        self._lib.bank_reset(self._struct)
+
+    def _describe(self, bank: KoopmanBank, band: Band) -> None:
+        struct, car = self._struct, bank.provenance.settings.vehicle
+        struct.bands, struct.band_count = self._bands, len(self._bands)
+        struct.unit_nm = UNIT_NM
+        struct.reduction_pull = band.cost.reduction_pull
+        struct.change_pull = band.cost.change_pull
+        struct.car = (car.wheel_radius_m, car.slip_epsilon_m2ps2, car.tyre_b, car.tyre_c)
 
 
-def _struct_of(band: Band) -> Any:
-    struct, cost = core().ffi.new("band *"), band.cost
+def _set_up(struct: Any, band: Band) -> None:
+    cost = band.cost
     arrays = (band.system.a, band.system.b, cost.hessian, cost.gradient_map)
-    if core().lib.band_setup(struct, NX, len(cost.hessian), *map(doubles, arrays)):
+    if core().lib.band_setup(struct, len(cost.hessian), *map(doubles, arrays)):
         raise ConfigError("the weights of kmpc make its problem singular: raise weight_reduction")
-    return struct

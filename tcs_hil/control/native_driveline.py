@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 from msgspec.structs import astuple
-from numpy.typing import NDArray
 
-from tcs_hil.control.driveline_core import Situation
 from tcs_hil.control.native_law import unpack_outcome
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.native import array_of, core
-
-FloatArray = NDArray[np.float64]
 
 
 class NativeDriveline:
@@ -24,27 +20,27 @@ class NativeDriveline:
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
         self._lib, self._struct = core().lib, core().ffi.new("driveline *")
-        self._x = array_of(self._struct.x)  # (7,)
+        self.x = array_of(self._struct.x)  # (7,)
         _describe(self._struct, settings, vehicle)
         tuning = settings.default.nmpc
         self._plan = array_of(self._struct.plan)[: len(tuning.blocks)]  # (N,), Nm
         self._lib.driveline_setup(self._struct, len(tuning.blocks), tuning.max_iterations)
 
-    def after(
-        self, state: FloatArray, torque_nm: float, duration_s: float, disturbance_n: float
-    ) -> FloatArray:
-        """State (7,) after a duration; valid until the next call."""
-        self._x[:] = state
-        self._struct.disturbance_n = disturbance_n
-        self._lib.driveline_advance(self._struct, torque_nm, duration_s)
-        return self._x
+    def roll_forward(
+        self, torques_nm: Sequence[float], first_periods: float, disturbance_n: float
+    ) -> None:
+        """Carry x through torques, the first for a part of a period, then one each."""
+        self._lib.driveline_roll_forward(
+            self._struct, torques_nm, len(torques_nm), first_periods, disturbance_n
+        )
 
-    def plan(self, state: FloatArray, situation: Situation) -> Plan:
-        """Best torques (N,) in Nm from a state (7,) on; valid until the next call."""
-        torque_ref_nm, last_torque_nm, disturbance_n, urgency = situation
-        self._x[:] = state
-        self._struct.disturbance_n = disturbance_n
-        outcome = self._lib.driveline_plan(self._struct, last_torque_nm, torque_ref_nm, urgency)
+    def plan(
+        self, last_torque_nm: float, torque_ref_nm: float, disturbance_n: float, urgency: float
+    ) -> Plan:
+        """Best torques (N,) in Nm from x on; valid until the next call."""
+        outcome = self._lib.driveline_plan(
+            self._struct, last_torque_nm, torque_ref_nm, disturbance_n, urgency
+        )
         return Plan(self._plan, *unpack_outcome(outcome))
 
     def reset(self) -> None:

@@ -31,7 +31,7 @@ class Plan(NamedTuple):
         A horizon of one means the same torque again.
         """
         failed = self.status is SolveStatus.FAILED
-        return math.nan if failed else float(self.inputs[:2][-1])
+        return math.nan if failed else self.inputs.item(min(1, self.inputs.size - 1))
 
 
 def mixed(plans: Sequence[Plan], weights: Sequence[float]) -> Plan:

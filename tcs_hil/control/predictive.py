@@ -48,4 +48,4 @@ class PredictiveController:
         if plan.status is SolveStatus.FAILED:
             self._optimiser.reset()  # what failed is no warm start
             return torque_ref_nm
-        return clamp(float(plan.inputs[0]), torque_ref_nm)
+        return clamp(plan.inputs.item(0), torque_ref_nm)

@@ -19,6 +19,7 @@ SOURCES = (
     "sqp",
     "nmpc",
     "wheel_model",
+    "observables",
     "bank",
     "driveline",
     "driveline_model",

@@ -61,7 +61,6 @@ int nmpc_step(nmpc *law, double slip_speed_mps, double wheel_speed_radps, double
 
 typedef struct {
     double x[...], plan[...];
-    double disturbance_n;
     double period_s, slip_gain, integral_gain, reduction_gain;
     double parameters[...];
     int blocks[...];
@@ -70,23 +69,34 @@ typedef struct {
 
 void driveline_setup(driveline *law, int block_count, int max_iterations);
 void driveline_reset(driveline *law);
-void driveline_advance(driveline *law, double torque_nm, double duration_s);
-int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm, double urgency);
+void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
+                            double first_periods, double disturbance_n);
+int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm,
+                   double disturbance_n, double urgency);
 
 typedef struct {
-    box_qp qp;
+    double centre_mps;
     ...;
 } band;
 
 typedef struct {
-    int nx;
-    double a[...], x[...], plan[...];
+    double wheel_radius_m, slip_epsilon_m2ps2, tyre_b, tyre_c;
+} belief;
+
+typedef struct {
+    int band_count;
+    band *bands;
+    belief car;
     double unit_nm, reduction_pull, change_pull;
+    double x[...], plan[...];
     ...;
 } bank;
 
-int band_setup(band *self, int nx, int n, const double *a, const double *b, const double *hessian,
+int band_setup(band *self, int n, const double *a, const double *b, const double *hessian,
                const double *gradient_map);
-void bank_settle(bank *law, band *first, double weight, band *second, double other_weight);
-void bank_advance(bank *law, double torque_nm, double periods);
+void bank_reset(bank *law);
+double bank_observe(bank *law, double vehicle_speed_mps, double slip_speed_mps,
+                    double wheel_speed_radps, double motor_speed_radps, double motor_torque_nm,
+                    double integral_s, double disturbance_radps);
+void bank_roll_forward(bank *law, const double *torques_nm, int count, double first_periods);
 int bank_plan(bank *law, double last_torque_nm, double torque_ref_nm);

@@ -64,11 +64,22 @@ def test_the_plan_of_a_band_is_the_exact_minimiser(band: int) -> None:
     rng = np.random.default_rng(11)
     for _ in range(20):
         speed_mps, kappa = BANK.centre_mps[band], rng.uniform(0.0, 0.3)
-        x = optimiser.state(wheel_at(speed_mps, kappa, 120.0), rng.uniform(-0.01, 0.01))
+        optimiser.observe(wheel_at(speed_mps, kappa, 120.0), rng.uniform(-0.01, 0.01))
+        x = optimiser.state.copy()
         plan = problem.solve(x, 120.0, 200.0)
         assert plan.status is SolveStatus.OK
         expected = reference_plan(band, x, 120.0, 200.0)
         assert np.abs(plan.inputs - expected).max() < AGREEMENT_NM
+
+
+def test_the_state_is_carried_through_every_torque_under_way() -> None:
+    optimiser, system = BankOptimiser(SETTINGS, BANK), bands_of(BANK, SETTINGS)[4].system
+    optimiser.observe(wheel_at(BANK.centre_mps[4], 0.1, 120.0), 0.001)
+    x = optimiser.state.copy()
+    optimiser.roll_forward([40.0, 60.0], 0.25)
+    x += 0.25 * (system.a @ x + system.b[:, 0] * 40.0 - x)
+    x = system.a @ x + system.b[:, 0] * 60.0
+    np.testing.assert_allclose(optimiser.state, x, rtol=1e-12)
 
 
 def test_without_a_motor_on_the_bus_it_goes_on_with_what_it_sent() -> None:

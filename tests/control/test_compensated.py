@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from msgspec.structs import replace
 
@@ -17,24 +19,24 @@ SPINNING = wheel_at(5.0, 0.3)
 
 
 class Scripted:
-    """An optimiser whose state is what it was advanced by; it plans from a list."""
+    """An optimiser whose state is what it was rolled forward through; it plans from a list."""
 
     def __init__(self, *torques_nm: float) -> None:
         self._torques_nm = list(torques_nm)
-        self.asked: list[tuple[list[float], float, float]] = []
+        self.state: tuple[list[float], float] = ([], 1.0)
+        self.asked: list[tuple[tuple[list[float], float], float, float]] = []
         self.integrals: list[float] = []
         self.status = SolveStatus.OK
         self.resets = 0
 
-    def state(self, wheel: WheelState, integral_s: float) -> np.ndarray:
+    def observe(self, wheel: WheelState, integral_s: float) -> None:
         self.integrals.append(integral_s)
-        return np.zeros(0)
 
-    def advance(self, state: np.ndarray, torque_nm: float, periods: float) -> np.ndarray:
-        return np.append(state, torque_nm * periods)
+    def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
+        self.state = list(torques_nm), first_periods
 
-    def plan(self, state: np.ndarray, last_torque_nm: float, torque_ref_nm: float) -> Plan:
-        self.asked.append((state.tolist(), last_torque_nm, torque_ref_nm))
+    def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
+        self.asked.append((self.state, last_torque_nm, torque_ref_nm))
         return Plan(np.array([self._torques_nm.pop(0), 0.0]), self.status, 2)
 
     def reset(self) -> None:
@@ -53,7 +55,7 @@ def test_it_plans_from_the_state_behind_the_torques_under_way() -> None:
     late = replace(SPINNING, loop_delay_s=0.003)
     for _ in range(3):
         controller.step(late, 200.0)
-    assert optimiser.asked[2] == ([0.5 * 80.0, 70.0], 70.0, 200.0)
+    assert optimiser.asked[2] == (([80.0, 70.0], 0.5), 70.0, 200.0)
 
 
 def test_the_first_torque_of_the_plan_is_proposed_within_the_request() -> None:

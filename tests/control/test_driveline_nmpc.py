@@ -53,6 +53,17 @@ def test_the_model_is_the_driveline_integrated() -> None:
     np.testing.assert_allclose(after, exact, rtol=2e-4, atol=1e-6)
 
 
+def test_the_state_is_carried_through_every_torque_under_way() -> None:
+    flow, optimiser = (
+        Flow(advance_function(SETTINGS, VEHICLE)),
+        DrivelineOptimiser(SETTINGS, VEHICLE),
+    )
+    optimiser.state[:] = STATE
+    optimiser.roll_forward([40.0, 60.0], 0.25)
+    half = flow.after(STATE, 40.0, 0.25 * 0.002, 0.0).copy()
+    np.testing.assert_allclose(optimiser.state, flow.after(half, 60.0, 0.002, 0.0), rtol=1e-12)
+
+
 @pytest.mark.parametrize("speed_mps", [0.3, 60.0])
 def test_one_runge_kutta_step_of_the_longest_block_is_stable(speed_mps: float) -> None:
     flow = Flow(advance_function(SETTINGS, VEHICLE))
@@ -99,7 +110,8 @@ def test_the_gradient_is_the_slope_of_the_cost(problem: Linearisation) -> None:
 
 def test_a_plan_takes_no_more_iterations_than_allowed_and_stays_in_the_box() -> None:
     optimiser = DrivelineOptimiser(SETTINGS, VEHICLE)
-    plan = optimiser.plan(STATE, LAST_NM, REQUEST_NM)
+    optimiser.state[:] = STATE
+    plan = optimiser.plan(LAST_NM, REQUEST_NM)
     assert plan.status in (SolveStatus.OK, SolveStatus.MAX_ITERATIONS)
     assert plan.iterations <= TUNING.max_iterations
     assert plan.inputs.min() >= -1e-9
@@ -109,8 +121,8 @@ def test_a_plan_takes_no_more_iterations_than_allowed_and_stays_in_the_box() -> 
 def test_the_law_is_softer_at_walking_pace() -> None:
     def cut(speed_mps: float) -> float:
         optimiser = DrivelineOptimiser(SETTINGS, VEHICLE)
-        x = optimiser.state(wheel_at(speed_mps, 0.2, 120.0), 0.0)
-        return 120.0 - float(optimiser.plan(x, 120.0, 200.0).inputs[0])
+        optimiser.observe(wheel_at(speed_mps, 0.2, 120.0), 0.0)
+        return 120.0 - float(optimiser.plan(120.0, 200.0).inputs[0])
 
     hard = SETTINGS.default.nmpc.soft_speed_mps
     assert 0.0 < cut(0.3 * hard) < cut(hard)
@@ -134,7 +146,8 @@ def test_a_delay_wrong_by_a_period_degrades_but_does_not_destabilise(delay: int)
 def test_without_a_motor_on_the_bus_the_state_is_a_steady_one() -> None:
     optimiser = DrivelineOptimiser(SETTINGS, VEHICLE)
     blind = replace(wheel_at(5.0, 0.1), motor_torque_nm=math.nan)
-    state = optimiser.state(blind, 0.0)
+    optimiser.observe(blind, 0.0)
+    state = optimiser.state
     assert np.isfinite(state).all()
     assert VEHICLE.gear_ratio * state[3] == pytest.approx(state[6] * VEHICLE.wheel_radius_m)
     assert state[5] * LINE.shaft_stiffness_nmprad == pytest.approx(state[6] * 0.318)

@@ -8,7 +8,7 @@
 enum { DRIVELINE_NX = 7, DRIVELINE_PARAMETERS = 17 };
 
 typedef struct {
-    double x[DRIVELINE_NX]; /* the state that the functions below start from; SI units */
+    double x[DRIVELINE_NX]; /* the state that is rolled forward and planned from; SI units */
     double plan[BOX_QP_MAX];
     double disturbance_n;   /* on the tyre force */
     double torque_ref_nm, last_torque_nm;
@@ -26,10 +26,12 @@ void driveline_setup(driveline *law, int block_count, int max_iterations);
 /* Forget the last plan. */
 void driveline_reset(driveline *law);
 
-/* Replace x by the state after a duration of at most 4 ms under a commanded motor torque. */
-void driveline_advance(driveline *law, double torque_nm, double duration_s);
+/* Carry x through torques (count,), the first for a part of a period, the others for one each. */
+void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
+                            double first_periods, double disturbance_n);
 
 /* Write the best torques from x on into `plan`; see `outcome`. */
-int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm, double urgency);
+int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm,
+                   double disturbance_n, double urgency);
 
 #endif

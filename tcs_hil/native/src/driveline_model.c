@@ -31,6 +31,7 @@ extern "C" {
 /* Add prefix to internal symbols */
 #define casadi_f0 CASADI_PREFIX(f0)
 #define casadi_f1 CASADI_PREFIX(f1)
+#define casadi_f2 CASADI_PREFIX(f2)
 #define casadi_s0 CASADI_PREFIX(s0)
 #define casadi_s1 CASADI_PREFIX(s1)
 #define casadi_s2 CASADI_PREFIX(s2)
@@ -72,8 +73,351 @@ static const casadi_int casadi_s3[3] = {17, 1, 1};
 static const casadi_int casadi_s4[3] = {7, 8, 1};
 static const casadi_int casadi_s5[3] = {1, 2, 1};
 
-/* driveline_step:(i0[7],i1,i2[2],i3[17])->(o0[7],o1[7x8]) */
+/* driveline_flow:(i0[7],i1,i2[2],i3[17])->(o0[7]) */
 static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
+  casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
+  casadi_real a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47;
+  a00=arg[0]? arg[0][0] : 0;
+  a01=arg[2]? arg[2][0] : 0;
+  a02=6.;
+  a02=(a01/a02);
+  a03=arg[3]? arg[3][8] : 0;
+  a04=arg[3]? arg[3][3] : 0;
+  a05=arg[0]? arg[0][5] : 0;
+  a06=(a04*a05);
+  a07=arg[3]? arg[3][4] : 0;
+  a08=arg[0]? arg[0][4] : 0;
+  a09=arg[0]? arg[0][1] : 0;
+  a10=(a08-a09);
+  a11=(a07*a10);
+  a06=(a06+a11);
+  a11=arg[0]? arg[0][6] : 0;
+  a12=(a11*a03);
+  a12=(a06-a12);
+  a13=arg[3]? arg[3][1] : 0;
+  a12=(a12/a13);
+  a14=(a03*a12);
+  a15=2.;
+  a16=arg[3]? arg[3][7] : 0;
+  a17=(a15/a16);
+  a18=(a17*a11);
+  a14=(a14-a18);
+  a15=(a01/a15);
+  a18=(a15*a10);
+  a18=(a05+a18);
+  a18=(a04*a18);
+  a19=arg[3]? arg[3][10] : 0;
+  a20=arg[0]? arg[0][3] : 0;
+  a21=(a19*a20);
+  a21=(a21-a06);
+  a06=arg[3]? arg[3][2] : 0;
+  a21=(a21/a06);
+  a22=(a15*a21);
+  a22=(a08+a22);
+  a23=(a15*a12);
+  a23=(a09+a23);
+  a22=(a22-a23);
+  a24=(a07*a22);
+  a18=(a18+a24);
+  a24=arg[3]? arg[3][15] : 0;
+  a25=9.8100000000000005e+00;
+  a25=(a25*a16);
+  a16=4.;
+  a25=(a25/a16);
+  a24=(a24*a25);
+  a25=arg[3]? arg[3][12] : 0;
+  a24=(a24*a25);
+  a25=arg[3]? arg[3][13] : 0;
+  a16=arg[3]? arg[3][14] : 0;
+  a26=(a09*a03);
+  a27=(a00*a26);
+  a26=casadi_sq(a26);
+  a28=arg[3]? arg[3][16] : 0;
+  a26=(a26+a28);
+  a27=(a27/a26);
+  a29=(a16*a27);
+  a29=atan(a29);
+  a29=(a25*a29);
+  a29=sin(a29);
+  a29=(a24*a29);
+  a30=arg[2]? arg[2][1] : 0;
+  a29=(a29+a30);
+  a29=(a29-a11);
+  a31=arg[3]? arg[3][6] : 0;
+  a26=sqrt(a26);
+  a26=(a31/a26);
+  a32=2.5000000000000001e-03;
+  a26=(a26+a32);
+  a29=(a29/a26);
+  a26=(a15*a29);
+  a26=(a11+a26);
+  a33=(a26*a03);
+  a33=(a18-a33);
+  a33=(a33/a13);
+  a34=(a03*a33);
+  a35=(a17*a26);
+  a34=(a34-a35);
+  a35=(2.*a34);
+  a35=(a14+a35);
+  a36=(a15*a22);
+  a36=(a05+a36);
+  a36=(a04*a36);
+  a37=arg[1]? arg[1][0] : 0;
+  a38=(a37-a20);
+  a39=arg[3]? arg[3][5] : 0;
+  a38=(a38/a39);
+  a40=(a15*a38);
+  a40=(a20+a40);
+  a41=(a19*a40);
+  a41=(a41-a18);
+  a41=(a41/a06);
+  a18=(a15*a41);
+  a18=(a08+a18);
+  a42=(a15*a33);
+  a42=(a09+a42);
+  a18=(a18-a42);
+  a43=(a07*a18);
+  a36=(a36+a43);
+  a14=(a15*a14);
+  a14=(a00+a14);
+  a23=(a23*a03);
+  a14=(a14*a23);
+  a23=casadi_sq(a23);
+  a23=(a23+a28);
+  a14=(a14/a23);
+  a43=(a16*a14);
+  a43=atan(a43);
+  a43=(a25*a43);
+  a43=sin(a43);
+  a43=(a24*a43);
+  a43=(a43+a30);
+  a43=(a43-a26);
+  a23=sqrt(a23);
+  a23=(a31/a23);
+  a23=(a23+a32);
+  a43=(a43/a23);
+  a23=(a15*a43);
+  a23=(a11+a23);
+  a26=(a23*a03);
+  a26=(a36-a26);
+  a26=(a26/a13);
+  a44=(a03*a26);
+  a45=(a17*a23);
+  a44=(a44-a45);
+  a45=(2.*a44);
+  a35=(a35+a45);
+  a45=(a01*a18);
+  a45=(a05+a45);
+  a04=(a04*a45);
+  a40=(a37-a40);
+  a40=(a40/a39);
+  a45=(a15*a40);
+  a45=(a20+a45);
+  a46=(a19*a45);
+  a46=(a46-a36);
+  a46=(a46/a06);
+  a36=(a01*a46);
+  a36=(a08+a36);
+  a47=(a01*a26);
+  a47=(a09+a47);
+  a36=(a36-a47);
+  a07=(a07*a36);
+  a04=(a04+a07);
+  a15=(a15*a34);
+  a15=(a00+a15);
+  a42=(a42*a03);
+  a15=(a15*a42);
+  a42=casadi_sq(a42);
+  a42=(a42+a28);
+  a15=(a15/a42);
+  a34=(a16*a15);
+  a34=atan(a34);
+  a34=(a25*a34);
+  a34=sin(a34);
+  a34=(a24*a34);
+  a34=(a34+a30);
+  a34=(a34-a23);
+  a42=sqrt(a42);
+  a42=(a31/a42);
+  a42=(a42+a32);
+  a34=(a34/a42);
+  a42=(a01*a34);
+  a42=(a11+a42);
+  a23=(a42*a03);
+  a23=(a04-a23);
+  a23=(a23/a13);
+  a13=(a03*a23);
+  a17=(a17*a42);
+  a13=(a13-a17);
+  a35=(a35+a13);
+  a35=(a02*a35);
+  a35=(a00+a35);
+  if (res[0]!=0) res[0][0]=a35;
+  a33=(2.*a33);
+  a12=(a12+a33);
+  a26=(2.*a26);
+  a12=(a12+a26);
+  a12=(a12+a23);
+  a12=(a02*a12);
+  a09=(a09+a12);
+  if (res[0]!=0) res[0][1]=a09;
+  a09=arg[0]? arg[0][2] : 0;
+  a12=arg[3]? arg[3][0] : 0;
+  a27=(a12-a27);
+  a14=(a12-a14);
+  a14=(2.*a14);
+  a27=(a27+a14);
+  a15=(a12-a15);
+  a15=(2.*a15);
+  a27=(a27+a15);
+  a44=(a01*a44);
+  a00=(a00+a44);
+  a47=(a47*a03);
+  a00=(a00*a47);
+  a47=casadi_sq(a47);
+  a47=(a47+a28);
+  a00=(a00/a47);
+  a12=(a12-a00);
+  a27=(a27+a12);
+  a27=(a02*a27);
+  a09=(a09+a27);
+  if (res[0]!=0) res[0][2]=a09;
+  a40=(2.*a40);
+  a38=(a38+a40);
+  a45=(a37-a45);
+  a45=(a45/a39);
+  a40=(2.*a45);
+  a38=(a38+a40);
+  a01=(a01*a45);
+  a01=(a20+a01);
+  a37=(a37-a01);
+  a37=(a37/a39);
+  a38=(a38+a37);
+  a38=(a02*a38);
+  a20=(a20+a38);
+  if (res[0]!=0) res[0][3]=a20;
+  a41=(2.*a41);
+  a21=(a21+a41);
+  a46=(2.*a46);
+  a21=(a21+a46);
+  a19=(a19*a01);
+  a19=(a19-a04);
+  a19=(a19/a06);
+  a21=(a21+a19);
+  a21=(a02*a21);
+  a08=(a08+a21);
+  if (res[0]!=0) res[0][4]=a08;
+  a22=(2.*a22);
+  a10=(a10+a22);
+  a18=(2.*a18);
+  a10=(a10+a18);
+  a10=(a10+a36);
+  a10=(a02*a10);
+  a05=(a05+a10);
+  if (res[0]!=0) res[0][5]=a05;
+  a43=(2.*a43);
+  a29=(a29+a43);
+  a34=(2.*a34);
+  a29=(a29+a34);
+  a16=(a16*a00);
+  a16=atan(a16);
+  a25=(a25*a16);
+  a25=sin(a25);
+  a24=(a24*a25);
+  a24=(a24+a30);
+  a24=(a24-a42);
+  a47=sqrt(a47);
+  a31=(a31/a47);
+  a31=(a31+a32);
+  a24=(a24/a31);
+  a29=(a29+a24);
+  a02=(a02*a29);
+  a11=(a11+a02);
+  if (res[0]!=0) res[0][6]=a11;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int driveline_flow(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
+  return casadi_f0(arg, res, iw, w, mem);
+}
+
+CASADI_SYMBOL_EXPORT int driveline_flow_checkout(void) {
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT void driveline_flow_release(int mem) {
+}
+
+CASADI_SYMBOL_EXPORT void driveline_flow_incref(void) {
+}
+
+CASADI_SYMBOL_EXPORT void driveline_flow_decref(void) {
+}
+
+CASADI_SYMBOL_EXPORT casadi_int driveline_flow_n_in(void) { return 4;}
+
+CASADI_SYMBOL_EXPORT casadi_int driveline_flow_n_out(void) { return 1;}
+
+CASADI_SYMBOL_EXPORT casadi_real driveline_flow_default_in(casadi_int i) {
+  switch (i) {
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* driveline_flow_name_in(casadi_int i) {
+  switch (i) {
+    case 0: return "i0";
+    case 1: return "i1";
+    case 2: return "i2";
+    case 3: return "i3";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* driveline_flow_name_out(casadi_int i) {
+  switch (i) {
+    case 0: return "o0";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* driveline_flow_sparsity_in(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s0;
+    case 1: return casadi_s1;
+    case 2: return casadi_s2;
+    case 3: return casadi_s3;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* driveline_flow_sparsity_out(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s0;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT int driveline_flow_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 4;
+  if (sz_res) *sz_res = 1;
+  if (sz_iw) *sz_iw = 0;
+  if (sz_w) *sz_w = 0;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int driveline_flow_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 4*sizeof(const casadi_real*);
+  if (sz_res) *sz_res = 1*sizeof(casadi_real*);
+  if (sz_iw) *sz_iw = 0*sizeof(casadi_int);
+  if (sz_w) *sz_w = 0*sizeof(casadi_real);
+  return 0;
+}
+
+/* driveline_step:(i0[7],i1,i2[2],i3[17])->(o0[7],o1[7x8]) */
+static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -1331,7 +1675,7 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int driveline_step(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f0(arg, res, iw, w, mem);
+  return casadi_f1(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int driveline_step_checkout(void) {
@@ -1410,7 +1754,7 @@ CASADI_SYMBOL_EXPORT int driveline_step_work_bytes(casadi_int *sz_arg, casadi_in
 }
 
 /* driveline_slip:(i0[7],i1[17])->(o0,o1[1x2]) */
-static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a0, a1, a2, a3, a4, a5;
   a0=arg[0]? arg[0][0] : 0;
   a1=arg[0]? arg[0][1] : 0;
@@ -1436,7 +1780,7 @@ static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int driveline_slip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f1(arg, res, iw, w, mem);
+  return casadi_f2(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int driveline_slip_checkout(void) {

@@ -17,6 +17,24 @@ extern "C" {
 #define casadi_int long long int
 #endif
 
+int driveline_flow(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+int driveline_flow_checkout(void);
+void driveline_flow_release(int mem);
+void driveline_flow_incref(void);
+void driveline_flow_decref(void);
+casadi_int driveline_flow_n_in(void);
+casadi_int driveline_flow_n_out(void);
+casadi_real driveline_flow_default_in(casadi_int i);
+const char* driveline_flow_name_in(casadi_int i);
+const char* driveline_flow_name_out(casadi_int i);
+const casadi_int* driveline_flow_sparsity_in(casadi_int i);
+const casadi_int* driveline_flow_sparsity_out(casadi_int i);
+int driveline_flow_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+int driveline_flow_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+#define driveline_flow_SZ_ARG 4
+#define driveline_flow_SZ_RES 1
+#define driveline_flow_SZ_IW 0
+#define driveline_flow_SZ_W 0
 int driveline_step(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int driveline_step_checkout(void);
 void driveline_step_release(int mem);

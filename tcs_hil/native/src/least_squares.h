@@ -6,15 +6,16 @@
 typedef struct {
     int n;
     double cost;
-    double *gradient; /* (N,) */
+    double *gradient; /* (N,); null: the cost alone */
     double *hessian;  /* (N, N); the lower triangle until `mirror` */
 } gauss_newton;
 
 /* Start from nothing. */
 void clear(gauss_newton *model);
 
-/* Add a residual whose derivatives by the first `count` torques are `row`; by the others 0. */
-void add_residual(gauss_newton *model, double residual, const double *row, int count);
+/* Add a residual whose derivatives by the torques `first` to `last` are in `row` (N,); by the
+   others 0. */
+void add_residual(gauss_newton *model, double residual, const double *row, int first, int last);
 
 /* Fill the upper triangle in. */
 void mirror(gauss_newton *model);

@@ -40,12 +40,11 @@ static void add_period(const nmpc *law, double torque_nm, int k, const shot *sta
     wheel_slip(arguments, results, 0, 0, 0);
     for (int j = 0; j <= k; j++)
         row[j] = -law->slip_gain * (by_state[0] * s[j] + by_state[1] * omega[j]);
-    add_residual(model, law->slip_gain * (law->integral.slip_reference - kappa), row, k + 1);
+    add_residual(model, law->slip_gain * (law->integral.slip_reference - kappa), row, 0, k);
     for (int j = 0; j <= k; j++) row[j] = law->integral_gain * state->by_torque[2][j];
-    add_residual(model, law->integral_gain * state->x[2], row, k + 1);
-    memset(row, 0, (size_t)k * sizeof *row);
+    add_residual(model, law->integral_gain * state->x[2], row, 0, k);
     row[k] = -1.0;
-    add_residual(model, law->torque_ref_nm - torque_nm, row, k + 1);
+    add_residual(model, law->torque_ref_nm - torque_nm, row, k, k);
 }
 
 static double linearise(const void *problem, int n, const double *plan, double *gradient,

@@ -10,7 +10,7 @@ void shot_torque(shot *state, int nx, int k) {
     for (int row = 0; row < nx; row++) state->by_torque[row][k] = 0.0;
 }
 
-void shot_advance(shot *state, int nx, int k, const double *after, const double *jacobian) {
+static void chain(shot *state, int nx, int k, const double *jacobian) {
     double product[SHOT_MAX][BOX_QP_MAX];
     const double *by_torque = jacobian + nx * nx;
     for (int row = 0; row < nx; row++) {
@@ -25,5 +25,9 @@ void shot_advance(shot *state, int nx, int k, const double *after, const double 
     }
     for (int row = 0; row < nx; row++)
         memcpy(state->by_torque[row], product[row], (size_t)(k + 1) * sizeof **product);
+}
+
+void shot_advance(shot *state, int nx, int k, const double *after, const double *jacobian) {
+    if (jacobian) chain(state, nx, k, jacobian);
     memcpy(state->x, after, (size_t)nx * sizeof *after);
 }

@@ -19,7 +19,7 @@ void shot_start(shot *state, int nx, const double *x);
 void shot_torque(shot *state, int nx, int k);
 
 /* Go on to `after` (nx,), whose derivatives by x and the k-th torque are `jacobian` (nx, nx + 1),
-   column by column. */
+   column by column, or null where nobody asks for them. */
 void shot_advance(shot *state, int nx, int k, const double *after, const double *jacobian);
 
 #endif

@@ -46,15 +46,17 @@ static double inner(int n, const double *a, const double *b) {
     return sum;
 }
 
-/* Go along the step until the cost falls enough (Armijo); the model follows the plan. */
+/* Go along the step until the cost falls enough (Armijo); the model follows the plan, unless it
+   was the last step. */
 static double search(sqp *solver, least_squares *model, const void *problem, double cost) {
-    const int n = solver->qp.n;
+    const int n = solver->qp.n, is_last = solver->iterations == solver->max_iterations;
     const double slope = ARMIJO * inner(n, solver->gradient, solver->qp.x);
+    double *gradient = is_last ? 0 : solver->gradient, *hessian = is_last ? 0 : solver->qp.hessian;
     double start[BOX_QP_MAX], trial_cost = cost, length = 1.0;
     memcpy(start, solver->plan, sizeof start);
     for (int k = 0; k < HALVINGS; k++, length *= 0.5) {
         for (int i = 0; i < n; i++) solver->plan[i] = start[i] + length * solver->qp.x[i];
-        trial_cost = model(problem, n, solver->plan, solver->gradient, solver->qp.hessian);
+        trial_cost = model(problem, n, solver->plan, gradient, hessian);
         if (trial_cost <= cost + length * slope) break;
     }
     return trial_cost;

@@ -14,7 +14,7 @@ typedef struct {
 } sqp;
 
 /* Cost of a plan (N,), a sum of squares; writes gradient (N,) and Hessian (N, N) of its
-   Gauss-Newton model. */
+   Gauss-Newton model, unless they are null. */
 typedef double least_squares(const void *problem, int n, const double *plan, double *gradient,
                              double *hessian);
 

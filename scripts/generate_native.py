@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import casadi as ca
 
@@ -21,53 +21,56 @@ from tcs_hil.control import driveline_transcription as driveline
 from tcs_hil.control.driveline import Driveline
 from tcs_hil.control.transcription import wheel_rate
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4, slip_ratio
+from tcs_hil.model.wheel import slip_ratio
 
 SOURCES = Path(__file__).resolve().parent.parent / "tcs_hil" / "native" / "src"
 
 
-def wheel_model() -> list[Any]:
-    """One Runge-Kutta step of [s, omega, e_int], and the slip ratio; both with derivatives."""
+class Model(NamedTuple):
+    """What a law in C needs of its prediction model."""
+
+    functions: list[Any]  # of CasADi
+    slopes: Any  # (nx, nx + 1): derivatives of the rate by the state and the torque
+
+
+def wheel_model() -> Model:
+    """The published law's: [s, omega, e_int]."""
     x, torque = ca.SX.sym("x", 3), ca.SX.sym("u")
-    step_s: Any = ca.SX.sym("h")
     reference = ca.SX.sym("kappa_ref")
     fields, car = symbolic(Vehicle)
-    parameters = ca.vertcat(step_s, reference, fields)
-    after = rk4(lambda state: wheel_rate(state, torque, reference, car), x, step_s, substeps=1)
-    return [
-        step("wheel_step", [x, torque, parameters], after),
-        slip("wheel_slip", x, parameters, car),
-    ]
+    parameters = ca.vertcat(reference, fields)
+    return model("wheel", x, [torque], parameters, wheel_rate(x, torque, reference, car), car)
 
 
-def driveline_model() -> list[Any]:
-    """One Runge-Kutta step of the default law's state, alone and with derivatives; slip ratio."""
+def driveline_model() -> Model:
+    """The default law's; the disturbance of the tyre's force is an argument of its own."""
     x, torque = ca.SX.sym("x", driveline.NX), ca.SX.sym("u")
-    duration_s, disturbance_n = ca.SX.sym("h"), ca.SX.sym("dF")
+    disturbance_n = ca.SX.sym("dF")
     reference = ca.SX.sym("kappa_ref")
     line_fields, line = symbolic(Driveline)
     car_fields, car = symbolic(Vehicle)
     parameters = ca.vertcat(reference, line_fields, car_fields)
     belief: Any = SimpleNamespace(slip_reference=reference, default=SimpleNamespace(driveline=line))
-    arguments = [x, torque, ca.vertcat(duration_s, disturbance_n), parameters]
-    after = driveline.advance(x, torque, duration_s, disturbance_n, belief, car)
-    return [
-        function("driveline_flow", arguments, [after]),
-        step("driveline_step", arguments, after),
-        slip("driveline_slip", x, parameters, car),
-    ]
+    rate = driveline.driveline_rate(x, torque, disturbance_n, belief, car)
+    return model("driveline", x, [torque, disturbance_n], parameters, rate, car)
 
 
-def step(name: str, arguments: list[Any], after: Any) -> Any:
-    """A state after a step, and its derivatives by the state before and the torque."""
-    x, torque, *_ = arguments
-    return function(name, arguments, [after, ca.jacobian(after, ca.vertcat(x, torque))])
+def model(name: str, x: Any, inputs: list[Any], parameters: Any, rate: Any, car: Any) -> Model:
+    """The rate, with the nonzero derivatives column by column, and the slip ratio with its own.
 
-
-def slip(name: str, x: Any, parameters: Any, car: Any) -> Any:
-    """The slip ratio, and its derivatives by s and omega."""
+    What parameters alone decide is folded into constants, which are made once.
+    """
+    nx, slopes = x.numel(), ca.jacobian(rate, ca.vertcat(x, inputs[0]))
+    both = ca.cse(ca.vertcat(ca.densify(rate), *slopes.nonzeros()))
+    both, symbols, folded = ca.extract_parametric(both, parameters)
+    arguments = [x, *inputs, parameters, ca.vertcat(*symbols)]
     kappa = slip_ratio(x[0], x[1], car)
-    return function(name, [x, parameters], [kappa, ca.jacobian(kappa, x[:2])])
+    functions = [
+        function(f"{name}_fold", [parameters], [ca.vertcat(*folded)]),
+        function(f"{name}_rate", arguments, [both[:nx], both[nx:]]),
+        function(f"{name}_slip", [x, parameters], [kappa, ca.jacobian(kappa, x[:2])]),
+    ]
+    return Model(functions, slopes)
 
 
 def symbolic(struct: Any) -> tuple[Any, Any]:
@@ -87,20 +90,51 @@ def function(name: str, arguments: list[Any], results: list[Any]) -> Any:
     return ca.Function(name, arguments, dense, {"cse": True})
 
 
-MODELS: dict[str, Callable[[], list[Any]]] = {
-    "wheel_model": wheel_model,
-    "driveline_model": driveline_model,
-}
+MODELS: dict[str, Callable[[], Model]] = {"wheel": wheel_model, "driveline": driveline_model}
+
+CHAIN = """/* Written by scripts/generate_native.py from the sparsity of the model's derivatives. */
+
+#include "shooting.h"
+
+void {name}_chain(const double *a, int count, const stage *of) {{
+    const double weight = of->weight, reach = of->reach;
+    const by_torques *before = of->before, *at = of->at, *sum = of->sum;
+    const double *torque = of->torque;
+    by_torques *next = of->next, *total = of->total;
+#pragma GCC ivdep /* at may be next, and sum total, but no column another */
+    for (int j = 0; j < count; j++) {{
+{columns}
+    }}
+}}
+"""
+
+
+def chain(name: str, slopes: Any) -> str:
+    """C of one stage of a Runge-Kutta step for the derivatives S by every torque: A S + B."""
+    nx, sparsity = slopes.size1(), slopes.sparsity()
+    places = list(enumerate(zip(sparsity.row(), sparsity.get_col(), strict=True)))
+    read = sorted({column for _, (_, column) in places})
+    rows = {column: f"at[{column}]" for column in range(nx)} | {nx: "torque"}
+    lines = [f"const double s{column} = {rows[column]}[j];" for column in read]
+    for row in range(nx):
+        terms = [f"a[{place}] * s{j}" for place, (i, j) in places if i == row]
+        lines.append(f"const double d{row} = {' + '.join(terms)};")
+    for row in range(nx):
+        lines.append(f"total[{row}][j] = sum[{row}][j] + weight * d{row};")
+        lines.append(f"next[{row}][j] = before[{row}][j] + reach * d{row};")
+    return CHAIN.format(name=name, columns="\n".join(" " * 8 + line for line in lines))
 
 
 def generate(name: str) -> dict[str, str]:
-    """Header and source of a model, by file name."""
-    generator = ca.CodeGenerator(name, {"with_header": True})
-    for each in MODELS[name]():
+    """Headers and sources of a model, by file name."""
+    functions, slopes = MODELS[name]()
+    generator = ca.CodeGenerator(f"{name}_model", {"with_header": True})
+    for each in functions:
         generator.add(each)
     with tempfile.TemporaryDirectory() as folder:
         generator.generate(folder + "/")
-        return {path.name: tidy(path.read_text()) for path in sorted(Path(folder).iterdir())}
+        written = {path.name: tidy(path.read_text()) for path in sorted(Path(folder).iterdir())}
+    return written | {f"{name}_chain.c": chain(name, slopes)}
 
 
 def tidy(text: str) -> str:

@@ -75,24 +75,31 @@ def advance(
     car: Vehicle,
 ) -> Any:
     """State (7,) after at most 4 ms of a commanded motor torque."""
-    line, radius_m = settings.default.driveline, car.wheel_radius_m
 
     def rate(state: Any) -> Any:
-        s, omega, _, motor_nm, motor_omega, twist, force_n = ca.vertsplit(state)
-        kappa = slip_ratio(s, omega, car)
-        twist_rate = motor_omega - omega
-        shaft_nm = line.shaft_stiffness_nmprad * twist + line.shaft_damping_nmsprad * twist_rate
-        omega_rate = (shaft_nm - force_n * radius_m) / line.wheel_inertia_kgm2
-        rolling_mps = ca.sqrt((omega * radius_m) ** 2 + car.slip_epsilon_m2ps2)
-        settling = 1.0 / (line.tyre_relaxation_m / rolling_mps + FASTEST_TYRE_S)
-        return ca.vertcat(
-            radius_m * omega_rate - 2.0 / car.mass_kg * force_n,
-            omega_rate,
-            settings.slip_reference - kappa,
-            (torque_nm - motor_nm) / line.motor_lag_s,
-            (car.gear_ratio * motor_nm - shaft_nm) / line.motor_inertia_kgm2,
-            twist_rate,
-            (tyre_force_n(kappa, car, ca) + disturbance_n - force_n) * settling,
-        )
+        return driveline_rate(state, torque_nm, disturbance_n, settings, car)
 
     return rk4(rate, x, duration_s, substeps=1)
+
+
+def driveline_rate(
+    x: Any, torque_nm: Any, disturbance_n: Any, settings: ControlSettings, car: Vehicle
+) -> Any:
+    """Time derivative of the state (7,)."""
+    line, radius_m = settings.default.driveline, car.wheel_radius_m
+    s, omega, _, motor_nm, motor_omega, twist, force_n = ca.vertsplit(x)
+    kappa = slip_ratio(s, omega, car)
+    twist_rate = motor_omega - omega
+    shaft_nm = line.shaft_stiffness_nmprad * twist + line.shaft_damping_nmsprad * twist_rate
+    omega_rate = (shaft_nm - force_n * radius_m) / line.wheel_inertia_kgm2
+    rolling_mps = ca.sqrt((omega * radius_m) ** 2 + car.slip_epsilon_m2ps2)
+    settling = 1.0 / (line.tyre_relaxation_m / rolling_mps + FASTEST_TYRE_S)
+    return ca.vertcat(
+        radius_m * omega_rate - 2.0 / car.mass_kg * force_n,
+        omega_rate,
+        settings.slip_reference - kappa,
+        (torque_nm - motor_nm) / line.motor_lag_s,
+        (car.gear_ratio * motor_nm - shaft_nm) / line.motor_inertia_kgm2,
+        twist_rate,
+        (tyre_force_n(kappa, car, ca) + disturbance_n - force_n) * settling,
+    )

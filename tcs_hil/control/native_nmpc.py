@@ -20,7 +20,6 @@ def native_nonlinear_mpc(settings: ControlSettings, vehicle: Vehicle) -> NativeL
     struct.substeps = tuning.substeps
     struct.slip_gain = math.sqrt(tuning.weight_slip / tuning.weight_reduction)
     struct.integral_gain = math.sqrt(tuning.weight_integral / tuning.weight_reduction)
-    step_s = settings.period_s / tuning.substeps
-    struct.parameters = (step_s, settings.slip_reference, *astuple(vehicle))
+    struct.parameters = (settings.slip_reference, *astuple(vehicle))
     core().lib.nmpc_setup(struct, tuning.horizon, tuning.max_iterations)
     return law

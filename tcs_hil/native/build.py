@@ -19,10 +19,12 @@ SOURCES = (
     "sqp",
     "nmpc",
     "wheel_model",
+    "wheel_chain",
     "observables",
     "bank",
     "driveline",
     "driveline_model",
+    "driveline_chain",
 )
 
 ffibuilder = FFI()

@@ -9,32 +9,33 @@
 #include "wheel_state.h"
 
 void driveline_setup(driveline *law, int block_count, int max_iterations) {
+    const double *arguments[] = {law->parameters};
+    double *results[] = {law->constants};
+    driveline_fold(arguments, results, 0, 0, 0);
     sqp_setup(&law->solver, block_count, max_iterations);
 }
 
 void driveline_reset(driveline *law) { sqp_reset(&law->solver); }
 
-/* The jacobian may be null: it costs most of it. */
-static void step(const driveline *law, const double *x, double torque_nm, double duration_s,
-                 double *after, double *jacobian) {
-    const double motion[] = {duration_s, law->disturbance_n};
-    const double *arguments[] = {x, &torque_nm, motion, law->parameters};
-    double *results[] = {after, jacobian};
-    if (jacobian)
-        driveline_step(arguments, results, 0, 0, 0);
-    else
-        driveline_flow(arguments, results, 0, 0, 0);
+static void rate(const void *problem, const double *x, double torque_nm, double *its_rate,
+                 double *slopes) {
+    const driveline *law = problem;
+    const double *arguments[] = {x, &torque_nm, &law->disturbance_n, law->parameters,
+                                 law->constants};
+    double *results[] = {its_rate, slopes};
+    driveline_rate(arguments, results, 0, 0, 0);
 }
+
+static const dynamics MODEL = {DRIVELINE_NX, rate, driveline_chain};
 
 void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
                             double first_periods, double disturbance_n) {
-    double after[DRIVELINE_NX];
+    shot state;
     law->disturbance_n = disturbance_n;
-    for (int k = 0; k < count; k++) {
-        const double periods = k == 0 ? first_periods : 1.0;
-        step(law, law->x, torques_nm[k], periods * law->period_s, after, 0);
-        memcpy(law->x, after, sizeof after);
-    }
+    shot_start(&state, &MODEL, law, 0, law->x);
+    for (int k = 0; k < count; k++)
+        shot_step(&state, torques_nm[k], k, law->period_s * (k == 0 ? first_periods : 1.0));
+    memcpy(law->x, state.x, sizeof law->x);
 }
 
 /* The residuals of one block: slip error, integral, torque reduction and change of torque. */
@@ -62,16 +63,13 @@ static void add_block(const driveline *law, const double *plan, int k, const sho
 static double linearise(const void *problem, int n, const double *plan, double *gradient,
                         double *hessian) {
     const driveline *law = problem;
-    double after[DRIVELINE_NX], derivatives[DRIVELINE_NX * (DRIVELINE_NX + 1)];
-    double *jacobian = gradient ? derivatives : 0;
     gauss_newton model = {n, 0.0, gradient, hessian};
     shot state;
-    shot_start(&state, DRIVELINE_NX, law->x);
+    shot_start(&state, &MODEL, law, gradient != 0, law->x);
     clear(&model);
     for (int k = 0; k < n; k++) {
-        shot_torque(&state, DRIVELINE_NX, k);
-        step(law, state.x, plan[k], law->blocks[k] * law->period_s, after, jacobian);
-        shot_advance(&state, DRIVELINE_NX, k, after, jacobian);
+        shot_torque(&state, k);
+        shot_step(&state, plan[k], k, law->blocks[k] * law->period_s);
         add_block(law, plan, k, &state, &model);
     }
     mirror(&model);

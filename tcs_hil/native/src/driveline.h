@@ -5,7 +5,7 @@
 
 #include "sqp.h"
 
-enum { DRIVELINE_NX = 7, DRIVELINE_PARAMETERS = 17 };
+enum { DRIVELINE_NX = 7, DRIVELINE_PARAMETERS = 17, DRIVELINE_CONSTANTS = 16 };
 
 typedef struct {
     double x[DRIVELINE_NX]; /* the state that is rolled forward and planned from; SI units */
@@ -16,6 +16,7 @@ typedef struct {
     double period_s;
     double slip_gain, integral_gain, reduction_gain; /* Nm per unit slip, per second, per Nm */
     double parameters[DRIVELINE_PARAMETERS];         /* of driveline_model.h */
+    double constants[DRIVELINE_CONSTANTS];           /* folded from them */
     int blocks[BOX_QP_MAX];                          /* periods each torque is held for */
     sqp solver;
 } driveline;

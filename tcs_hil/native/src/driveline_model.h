@@ -17,42 +17,42 @@ extern "C" {
 #define casadi_int long long int
 #endif
 
-int driveline_flow(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int driveline_flow_checkout(void);
-void driveline_flow_release(int mem);
-void driveline_flow_incref(void);
-void driveline_flow_decref(void);
-casadi_int driveline_flow_n_in(void);
-casadi_int driveline_flow_n_out(void);
-casadi_real driveline_flow_default_in(casadi_int i);
-const char* driveline_flow_name_in(casadi_int i);
-const char* driveline_flow_name_out(casadi_int i);
-const casadi_int* driveline_flow_sparsity_in(casadi_int i);
-const casadi_int* driveline_flow_sparsity_out(casadi_int i);
-int driveline_flow_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int driveline_flow_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-#define driveline_flow_SZ_ARG 4
-#define driveline_flow_SZ_RES 1
-#define driveline_flow_SZ_IW 0
-#define driveline_flow_SZ_W 0
-int driveline_step(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int driveline_step_checkout(void);
-void driveline_step_release(int mem);
-void driveline_step_incref(void);
-void driveline_step_decref(void);
-casadi_int driveline_step_n_in(void);
-casadi_int driveline_step_n_out(void);
-casadi_real driveline_step_default_in(casadi_int i);
-const char* driveline_step_name_in(casadi_int i);
-const char* driveline_step_name_out(casadi_int i);
-const casadi_int* driveline_step_sparsity_in(casadi_int i);
-const casadi_int* driveline_step_sparsity_out(casadi_int i);
-int driveline_step_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int driveline_step_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-#define driveline_step_SZ_ARG 4
-#define driveline_step_SZ_RES 2
-#define driveline_step_SZ_IW 0
-#define driveline_step_SZ_W 0
+int driveline_fold(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+int driveline_fold_checkout(void);
+void driveline_fold_release(int mem);
+void driveline_fold_incref(void);
+void driveline_fold_decref(void);
+casadi_int driveline_fold_n_in(void);
+casadi_int driveline_fold_n_out(void);
+casadi_real driveline_fold_default_in(casadi_int i);
+const char* driveline_fold_name_in(casadi_int i);
+const char* driveline_fold_name_out(casadi_int i);
+const casadi_int* driveline_fold_sparsity_in(casadi_int i);
+const casadi_int* driveline_fold_sparsity_out(casadi_int i);
+int driveline_fold_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+int driveline_fold_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+#define driveline_fold_SZ_ARG 1
+#define driveline_fold_SZ_RES 1
+#define driveline_fold_SZ_IW 0
+#define driveline_fold_SZ_W 0
+int driveline_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+int driveline_rate_checkout(void);
+void driveline_rate_release(int mem);
+void driveline_rate_incref(void);
+void driveline_rate_decref(void);
+casadi_int driveline_rate_n_in(void);
+casadi_int driveline_rate_n_out(void);
+casadi_real driveline_rate_default_in(casadi_int i);
+const char* driveline_rate_name_in(casadi_int i);
+const char* driveline_rate_name_out(casadi_int i);
+const casadi_int* driveline_rate_sparsity_in(casadi_int i);
+const casadi_int* driveline_rate_sparsity_out(casadi_int i);
+int driveline_rate_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+int driveline_rate_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+#define driveline_rate_SZ_ARG 5
+#define driveline_rate_SZ_RES 2
+#define driveline_rate_SZ_IW 0
+#define driveline_rate_SZ_W 0
 int driveline_slip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int driveline_slip_checkout(void);
 void driveline_slip_release(int mem);

@@ -7,6 +7,9 @@
 #include "wheel_model.h"
 
 void nmpc_setup(nmpc *law, int horizon, int max_iterations) {
+    const double *arguments[] = {law->parameters};
+    double *results[] = {law->constants};
+    wheel_fold(arguments, results, 0, 0, 0);
     sqp_setup(&law->solver, horizon, max_iterations);
     nmpc_reset(law);
 }
@@ -21,14 +24,15 @@ void nmpc_reset(nmpc *law) {
     forget_plans(law);
 }
 
-/* One Runge-Kutta step under the k-th torque. */
-static void substep(const nmpc *law, double torque_nm, int k, shot *state) {
-    double after[WHEEL_NX], jacobian[WHEEL_NX * (WHEEL_NX + 1)];
-    const double *arguments[] = {state->x, &torque_nm, law->parameters};
-    double *results[] = {after, jacobian};
-    wheel_step(arguments, results, 0, 0, 0);
-    shot_advance(state, WHEEL_NX, k, after, jacobian);
+static void rate(const void *problem, const double *x, double torque_nm, double *its_rate,
+                 double *slopes) {
+    const nmpc *law = problem;
+    const double *arguments[] = {x, &torque_nm, law->parameters, law->constants};
+    double *results[] = {its_rate, slopes};
+    wheel_rate(arguments, results, 0, 0, 0);
 }
+
+static const dynamics MODEL = {WHEEL_NX, rate, wheel_chain};
 
 /* The residuals of one period: slip error, integral and torque reduction, all in Nm. */
 static void add_period(const nmpc *law, double torque_nm, int k, const shot *state,
@@ -50,13 +54,14 @@ static void add_period(const nmpc *law, double torque_nm, int k, const shot *sta
 static double linearise(const void *problem, int n, const double *plan, double *gradient,
                         double *hessian) {
     const nmpc *law = problem;
+    const double step_s = law->integral.period_s / law->substeps;
     gauss_newton model = {n, 0.0, gradient, hessian};
     shot state;
-    shot_start(&state, WHEEL_NX, law->start);
+    shot_start(&state, &MODEL, law, gradient != 0, law->start);
     clear(&model);
     for (int k = 0; k < n; k++) {
-        shot_torque(&state, WHEEL_NX, k);
-        for (int step = 0; step < law->substeps; step++) substep(law, plan[k], k, &state);
+        shot_torque(&state, k);
+        for (int i = 0; i < law->substeps; i++) shot_step(&state, plan[k], k, step_s);
         add_period(law, plan[k], k, &state, &model);
     }
     mirror(&model);

@@ -6,7 +6,7 @@
 #include "sqp.h"
 #include "wheel_state.h"
 
-enum { WHEEL_NX = 3, WHEEL_PARAMETERS = 12 };
+enum { WHEEL_NX = 3, WHEEL_PARAMETERS = 11, WHEEL_CONSTANTS = 4 };
 
 typedef struct {
     proposal *answer; /* where it is written */
@@ -14,6 +14,7 @@ typedef struct {
     int substeps;                          /* Runge-Kutta steps in a period */
     double slip_gain, integral_gain;       /* Nm per unit slip and per second: the residuals' */
     double parameters[WHEEL_PARAMETERS];   /* of wheel_model.h */
+    double constants[WHEEL_CONSTANTS];     /* folded from them */
     double start[WHEEL_NX];                /* x_0 = [s, omega, e_int] */
     double torque_ref_nm;
     double before[BOX_QP_MAX];             /* the plan before the last one, which the solver has */

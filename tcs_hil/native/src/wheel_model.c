@@ -31,11 +31,13 @@ extern "C" {
 /* Add prefix to internal symbols */
 #define casadi_f0 CASADI_PREFIX(f0)
 #define casadi_f1 CASADI_PREFIX(f1)
+#define casadi_f2 CASADI_PREFIX(f2)
 #define casadi_s0 CASADI_PREFIX(s0)
 #define casadi_s1 CASADI_PREFIX(s1)
 #define casadi_s2 CASADI_PREFIX(s2)
 #define casadi_s3 CASADI_PREFIX(s3)
 #define casadi_s4 CASADI_PREFIX(s4)
+#define casadi_s5 CASADI_PREFIX(s5)
 #define casadi_sq CASADI_PREFIX(sq)
 
 /* Symbol visibility in DLLs */
@@ -64,510 +66,235 @@ CASADI_SYMBOL_EXPORT void wheel_model_casadi_version(int* major, int* minor, int
 CASADI_SYMBOL_EXPORT int wheel_model_casadi_int_size(void) { return (int) sizeof(casadi_int); }
 CASADI_SYMBOL_EXPORT int wheel_model_casadi_real_size(void) { return (int) sizeof(casadi_real); }
 
-static const casadi_int casadi_s0[3] = {3, 1, 1};
-static const casadi_int casadi_s1[3] = {1, 1, 1};
-static const casadi_int casadi_s2[3] = {12, 1, 1};
-static const casadi_int casadi_s3[3] = {3, 4, 1};
-static const casadi_int casadi_s4[3] = {1, 2, 1};
+static const casadi_int casadi_s0[3] = {11, 1, 1};
+static const casadi_int casadi_s1[3] = {4, 1, 1};
+static const casadi_int casadi_s2[3] = {3, 1, 1};
+static const casadi_int casadi_s3[3] = {1, 1, 1};
+static const casadi_int casadi_s4[3] = {8, 1, 1};
+static const casadi_int casadi_s5[3] = {1, 2, 1};
 
-/* wheel_step:(i0[3],i1,i2[12])->(o0[3],o1[3x4]) */
+/* wheel_fold:(i0[11])->(o0[4]) */
 static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
-  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
-  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
-  casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
-  casadi_real a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47;
-  casadi_real a48;
-  a00=arg[0]? arg[0][0] : 0;
-  a01=arg[2]? arg[2][0] : 0;
-  a02=6.;
-  a02=(a01/a02);
-  a03=arg[2]? arg[2][3] : 0;
-  a04=arg[2]? arg[2][5] : 0;
-  a05=arg[1]? arg[1][0] : 0;
-  a05=(a04*a05);
-  a06=arg[2]? arg[2][10] : 0;
-  a07=9.8100000000000005e+00;
-  a08=arg[2]? arg[2][2] : 0;
-  a07=(a07*a08);
-  a09=4.;
-  a07=(a07/a09);
-  a06=(a06*a07);
-  a07=arg[2]? arg[2][7] : 0;
-  a06=(a06*a07);
-  a07=arg[2]? arg[2][8] : 0;
-  a10=arg[2]? arg[2][9] : 0;
-  a11=arg[0]? arg[0][1] : 0;
-  a12=(a11*a03);
-  a13=(a00*a12);
-  a14=casadi_sq(a12);
-  a15=arg[2]? arg[2][11] : 0;
-  a14=(a14+a15);
-  a13=(a13/a14);
-  a16=(a10*a13);
-  a17=atan(a16);
-  a17=(a07*a17);
-  a18=sin(a17);
-  a18=(a06*a18);
-  a19=(a18*a03);
-  a19=(a05-a19);
-  a20=arg[2]? arg[2][4] : 0;
-  a19=(a19/a20);
-  a21=(a03*a19);
-  a09=(a09/a08);
-  a18=(a09*a18);
-  a21=(a21-a18);
-  a18=2.;
-  a18=(a01/a18);
-  a08=(a18*a21);
-  a08=(a00+a08);
-  a22=(a18*a19);
-  a22=(a11+a22);
-  a22=(a22*a03);
-  a23=(a08*a22);
-  a24=casadi_sq(a22);
-  a24=(a24+a15);
-  a23=(a23/a24);
-  a25=(a10*a23);
-  a26=atan(a25);
-  a26=(a07*a26);
-  a27=sin(a26);
-  a27=(a06*a27);
-  a28=(a27*a03);
-  a28=(a05-a28);
-  a28=(a28/a20);
-  a29=(a03*a28);
-  a27=(a09*a27);
-  a29=(a29-a27);
-  a27=(2.*a29);
-  a21=(a21+a27);
-  a29=(a18*a29);
-  a29=(a00+a29);
-  a27=(a18*a28);
-  a27=(a11+a27);
-  a27=(a27*a03);
-  a30=(a29*a27);
-  a31=casadi_sq(a27);
-  a31=(a31+a15);
-  a30=(a30/a31);
-  a32=(a10*a30);
-  a33=atan(a32);
-  a33=(a07*a33);
-  a34=sin(a33);
-  a34=(a06*a34);
-  a35=(a34*a03);
-  a35=(a05-a35);
-  a35=(a35/a20);
-  a36=(a03*a35);
-  a34=(a09*a34);
-  a36=(a36-a34);
-  a34=(2.*a36);
-  a21=(a21+a34);
-  a36=(a01*a36);
-  a36=(a00+a36);
-  a34=(a01*a35);
-  a34=(a11+a34);
-  a34=(a34*a03);
-  a37=(a36*a34);
-  a38=casadi_sq(a34);
-  a38=(a38+a15);
-  a37=(a37/a38);
-  a15=(a10*a37);
-  a39=atan(a15);
-  a39=(a07*a39);
-  a40=sin(a39);
-  a40=(a06*a40);
-  a41=(a40*a03);
-  a05=(a05-a41);
-  a05=(a05/a20);
-  a41=(a03*a05);
-  a40=(a09*a40);
-  a41=(a41-a40);
-  a21=(a21+a41);
-  a21=(a02*a21);
-  a21=(a00+a21);
-  if (res[0]!=0) res[0][0]=a21;
-  a28=(2.*a28);
-  a19=(a19+a28);
-  a35=(2.*a35);
-  a19=(a19+a35);
-  a19=(a19+a05);
-  a19=(a02*a19);
-  a11=(a11+a19);
-  if (res[0]!=0) res[0][1]=a11;
-  a11=arg[0]? arg[0][2] : 0;
-  a19=arg[2]? arg[2][1] : 0;
-  a05=(a19-a13);
-  a35=(a19-a23);
-  a35=(2.*a35);
-  a05=(a05+a35);
-  a35=(a19-a30);
-  a35=(2.*a35);
-  a05=(a05+a35);
-  a19=(a19-a37);
-  a05=(a05+a19);
-  a05=(a02*a05);
-  a11=(a11+a05);
-  if (res[0]!=0) res[0][2]=a11;
-  a11=1.;
-  a26=cos(a26);
-  a17=cos(a17);
-  a05=(a12/a14);
-  a19=(a10*a05);
-  a16=casadi_sq(a16);
-  a16=(a11+a16);
-  a19=(a19/a16);
-  a19=(a07*a19);
-  a19=(a17*a19);
-  a19=(a06*a19);
-  a35=(a03*a19);
-  a35=(a35/a20);
-  a28=(a03*a35);
-  a19=(a09*a19);
-  a28=(a28+a19);
-  a19=(a18*a28);
-  a19=(a11-a19);
-  a19=(a22*a19);
-  a21=(a18*a35);
-  a21=(a03*a21);
-  a41=(a08*a21);
-  a19=(a19-a41);
-  a19=(a19/a24);
-  a23=(a23/a24);
-  a41=(2.*a22);
-  a21=(a41*a21);
-  a21=(a23*a21);
-  a19=(a19+a21);
-  a21=(a10*a19);
-  a25=casadi_sq(a25);
-  a25=(a11+a25);
-  a21=(a21/a25);
-  a21=(a07*a21);
-  a21=(a26*a21);
-  a21=(a06*a21);
-  a40=(a03*a21);
-  a40=(a40/a20);
-  a42=(a03*a40);
-  a21=(a09*a21);
-  a42=(a42+a21);
-  a21=(-a42);
-  a21=(2.*a21);
-  a21=(a21-a28);
-  a33=cos(a33);
-  a42=(a18*a42);
-  a42=(a11-a42);
-  a42=(a27*a42);
-  a28=(a18*a40);
-  a28=(a03*a28);
-  a43=(a29*a28);
-  a42=(a42-a43);
-  a42=(a42/a31);
-  a30=(a30/a31);
-  a43=(2.*a27);
-  a28=(a43*a28);
-  a28=(a30*a28);
-  a42=(a42+a28);
-  a28=(a10*a42);
-  a32=casadi_sq(a32);
-  a32=(a11+a32);
-  a28=(a28/a32);
-  a28=(a07*a28);
-  a28=(a33*a28);
-  a28=(a06*a28);
-  a44=(a03*a28);
-  a44=(a44/a20);
-  a45=(a03*a44);
-  a28=(a09*a28);
-  a45=(a45+a28);
-  a28=(-a45);
-  a28=(2.*a28);
-  a21=(a21+a28);
-  a39=cos(a39);
-  a45=(a01*a45);
-  a45=(a11-a45);
-  a45=(a34*a45);
-  a28=(a01*a44);
-  a28=(a03*a28);
-  a46=(a36*a28);
-  a45=(a45-a46);
-  a45=(a45/a38);
-  a37=(a37/a38);
-  a46=(2.*a34);
-  a28=(a46*a28);
-  a28=(a37*a28);
-  a45=(a45+a28);
-  a28=(a10*a45);
-  a15=casadi_sq(a15);
-  a15=(a11+a15);
-  a28=(a28/a15);
-  a28=(a07*a28);
-  a28=(a39*a28);
-  a28=(a06*a28);
-  a47=(a03*a28);
-  a47=(a47/a20);
-  a48=(a03*a47);
-  a28=(a09*a28);
-  a48=(a48+a28);
-  a21=(a21-a48);
-  a21=(a02*a21);
-  a21=(a11+a21);
-  if (res[1]!=0) res[1][0]=a21;
-  a40=(-a40);
-  a40=(2.*a40);
-  a40=(a40-a35);
-  a44=(-a44);
-  a44=(2.*a44);
-  a40=(a40+a44);
-  a40=(a40-a47);
-  a40=(a02*a40);
-  if (res[1]!=0) res[1][1]=a40;
-  a19=(-a19);
-  a19=(2.*a19);
-  a19=(a19-a05);
-  a42=(-a42);
-  a42=(2.*a42);
-  a19=(a19+a42);
-  a19=(a19-a45);
-  a19=(a02*a19);
-  if (res[1]!=0) res[1][2]=a19;
-  a00=(a00*a03);
-  a00=(a00/a14);
-  a13=(a13/a14);
-  a12=(2.*a12);
-  a12=(a12*a03);
-  a13=(a13*a12);
-  a00=(a00-a13);
-  a13=(a10*a00);
-  a13=(a13/a16);
-  a13=(a07*a13);
-  a17=(a17*a13);
-  a17=(a06*a17);
-  a13=(a03*a17);
-  a13=(a13/a20);
-  a16=(a18*a13);
-  a16=(a11-a16);
-  a16=(a03*a16);
-  a12=(a08*a16);
-  a14=(a03*a13);
-  a17=(a09*a17);
-  a14=(a14+a17);
-  a17=(a18*a14);
-  a17=(a22*a17);
-  a12=(a12-a17);
-  a12=(a12/a24);
-  a16=(a41*a16);
-  a16=(a23*a16);
-  a12=(a12-a16);
-  a16=(a10*a12);
-  a16=(a16/a25);
-  a16=(a07*a16);
-  a16=(a26*a16);
-  a16=(a06*a16);
-  a17=(a03*a16);
-  a17=(a17/a20);
-  a19=(a03*a17);
-  a16=(a09*a16);
-  a19=(a19+a16);
-  a16=(-a19);
-  a16=(2.*a16);
-  a16=(a16-a14);
-  a14=(a18*a17);
-  a14=(a11-a14);
-  a14=(a03*a14);
-  a45=(a29*a14);
-  a19=(a18*a19);
-  a19=(a27*a19);
-  a45=(a45-a19);
-  a45=(a45/a31);
-  a14=(a43*a14);
-  a14=(a30*a14);
-  a45=(a45-a14);
-  a14=(a10*a45);
-  a14=(a14/a32);
-  a14=(a07*a14);
-  a14=(a33*a14);
-  a14=(a06*a14);
-  a19=(a03*a14);
-  a19=(a19/a20);
-  a42=(a03*a19);
-  a14=(a09*a14);
-  a42=(a42+a14);
-  a14=(-a42);
-  a14=(2.*a14);
-  a16=(a16+a14);
-  a14=(a01*a19);
-  a14=(a11-a14);
-  a14=(a03*a14);
-  a05=(a36*a14);
-  a42=(a01*a42);
-  a42=(a34*a42);
-  a05=(a05-a42);
-  a05=(a05/a38);
-  a14=(a46*a14);
-  a14=(a37*a14);
-  a05=(a05-a14);
-  a14=(a10*a05);
-  a14=(a14/a15);
-  a14=(a07*a14);
-  a14=(a39*a14);
-  a14=(a06*a14);
-  a42=(a03*a14);
-  a42=(a42/a20);
-  a40=(a03*a42);
-  a14=(a09*a14);
-  a40=(a40+a14);
-  a16=(a16-a40);
-  a16=(a02*a16);
-  if (res[1]!=0) res[1][3]=a16;
-  a17=(-a17);
-  a17=(2.*a17);
-  a17=(a17-a13);
-  a19=(-a19);
-  a19=(2.*a19);
-  a17=(a17+a19);
-  a17=(a17-a42);
-  a17=(a02*a17);
-  a17=(a11+a17);
-  if (res[1]!=0) res[1][4]=a17;
-  a12=(-a12);
-  a12=(2.*a12);
-  a12=(a12-a00);
-  a45=(-a45);
-  a45=(2.*a45);
-  a12=(a12+a45);
-  a12=(a12-a05);
-  a12=(a02*a12);
-  if (res[1]!=0) res[1][5]=a12;
-  a12=0.;
-  if (res[1]!=0) res[1][6]=a12;
-  if (res[1]!=0) res[1][7]=a12;
-  if (res[1]!=0) res[1][8]=a11;
-  a11=(a04/a20);
-  a12=(a03*a11);
-  a05=(a18*a12);
-  a22=(a22*a05);
-  a05=(a18*a11);
-  a05=(a03*a05);
-  a08=(a08*a05);
-  a22=(a22+a08);
-  a22=(a22/a24);
-  a41=(a41*a05);
-  a23=(a23*a41);
-  a22=(a22-a23);
-  a23=(a10*a22);
-  a23=(a23/a25);
-  a23=(a07*a23);
-  a26=(a26*a23);
-  a26=(a06*a26);
-  a23=(a03*a26);
-  a23=(a04-a23);
-  a23=(a23/a20);
-  a25=(a03*a23);
-  a26=(a09*a26);
-  a25=(a25-a26);
-  a26=(2.*a25);
-  a12=(a12+a26);
-  a25=(a18*a25);
-  a27=(a27*a25);
-  a18=(a18*a23);
-  a18=(a03*a18);
-  a29=(a29*a18);
-  a27=(a27+a29);
-  a27=(a27/a31);
-  a43=(a43*a18);
-  a30=(a30*a43);
-  a27=(a27-a30);
-  a30=(a10*a27);
-  a30=(a30/a32);
-  a30=(a07*a30);
-  a33=(a33*a30);
-  a33=(a06*a33);
-  a30=(a03*a33);
-  a30=(a04-a30);
-  a30=(a30/a20);
-  a32=(a03*a30);
-  a33=(a09*a33);
-  a32=(a32-a33);
-  a33=(2.*a32);
-  a12=(a12+a33);
-  a32=(a01*a32);
-  a34=(a34*a32);
-  a01=(a01*a30);
-  a01=(a03*a01);
-  a36=(a36*a01);
-  a34=(a34+a36);
-  a34=(a34/a38);
-  a46=(a46*a01);
-  a37=(a37*a46);
-  a34=(a34-a37);
-  a10=(a10*a34);
-  a10=(a10/a15);
-  a07=(a07*a10);
-  a39=(a39*a07);
-  a06=(a06*a39);
-  a39=(a03*a06);
-  a04=(a04-a39);
-  a04=(a04/a20);
-  a03=(a03*a04);
-  a09=(a09*a06);
-  a03=(a03-a09);
-  a12=(a12+a03);
-  a12=(a02*a12);
-  if (res[1]!=0) res[1][9]=a12;
-  a23=(2.*a23);
-  a11=(a11+a23);
-  a30=(2.*a30);
-  a11=(a11+a30);
-  a11=(a11+a04);
-  a11=(a02*a11);
-  if (res[1]!=0) res[1][10]=a11;
-  a22=(-a22);
-  a22=(2.*a22);
-  a27=(-a27);
-  a27=(2.*a27);
-  a22=(a22+a27);
-  a22=(a22-a34);
-  a02=(a02*a22);
-  if (res[1]!=0) res[1][11]=a02;
+  casadi_real a0, a1, a2, a3;
+  a0=arg[0]? arg[0][9] : 0;
+  a1=9.8100000000000005e+00;
+  a2=arg[0]? arg[0][1] : 0;
+  a1=(a1*a2);
+  a3=4.;
+  a1=(a1/a3);
+  a0=(a0*a1);
+  a1=arg[0]? arg[0][6] : 0;
+  a0=(a0*a1);
+  if (res[0]!=0) res[0][0]=a0;
+  a3=(a3/a2);
+  if (res[0]!=0) res[0][1]=a3;
+  a3=arg[0]? arg[0][2] : 0;
+  a2=arg[0]? arg[0][4] : 0;
+  a0=arg[0]? arg[0][3] : 0;
+  a2=(a2/a0);
+  a3=(a3*a2);
+  if (res[0]!=0) res[0][2]=a3;
+  if (res[0]!=0) res[0][3]=a2;
   return 0;
 }
 
-CASADI_SYMBOL_EXPORT int wheel_step(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
+CASADI_SYMBOL_EXPORT int wheel_fold(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
   return casadi_f0(arg, res, iw, w, mem);
 }
 
-CASADI_SYMBOL_EXPORT int wheel_step_checkout(void) {
+CASADI_SYMBOL_EXPORT int wheel_fold_checkout(void) {
   return 0;
 }
 
-CASADI_SYMBOL_EXPORT void wheel_step_release(int mem) {
+CASADI_SYMBOL_EXPORT void wheel_fold_release(int mem) {
 }
 
-CASADI_SYMBOL_EXPORT void wheel_step_incref(void) {
+CASADI_SYMBOL_EXPORT void wheel_fold_incref(void) {
 }
 
-CASADI_SYMBOL_EXPORT void wheel_step_decref(void) {
+CASADI_SYMBOL_EXPORT void wheel_fold_decref(void) {
 }
 
-CASADI_SYMBOL_EXPORT casadi_int wheel_step_n_in(void) { return 3;}
+CASADI_SYMBOL_EXPORT casadi_int wheel_fold_n_in(void) { return 1;}
 
-CASADI_SYMBOL_EXPORT casadi_int wheel_step_n_out(void) { return 2;}
+CASADI_SYMBOL_EXPORT casadi_int wheel_fold_n_out(void) { return 1;}
 
-CASADI_SYMBOL_EXPORT casadi_real wheel_step_default_in(casadi_int i) {
+CASADI_SYMBOL_EXPORT casadi_real wheel_fold_default_in(casadi_int i) {
   switch (i) {
     default: return 0;
   }
 }
 
-CASADI_SYMBOL_EXPORT const char* wheel_step_name_in(casadi_int i) {
+CASADI_SYMBOL_EXPORT const char* wheel_fold_name_in(casadi_int i) {
+  switch (i) {
+    case 0: return "i0";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* wheel_fold_name_out(casadi_int i) {
+  switch (i) {
+    case 0: return "o0";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* wheel_fold_sparsity_in(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s0;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* wheel_fold_sparsity_out(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s1;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT int wheel_fold_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 1;
+  if (sz_res) *sz_res = 1;
+  if (sz_iw) *sz_iw = 0;
+  if (sz_w) *sz_w = 0;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int wheel_fold_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 1*sizeof(const casadi_real*);
+  if (sz_res) *sz_res = 1*sizeof(casadi_real*);
+  if (sz_iw) *sz_iw = 0*sizeof(casadi_int);
+  if (sz_w) *sz_w = 0*sizeof(casadi_real);
+  return 0;
+}
+
+/* wheel_rate:(i0[3],i1,i2[11],i3[4])->(o0[3],o1[8]) */
+static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13, a14, a15;
+  a00=arg[2]? arg[2][2] : 0;
+  a01=arg[2]? arg[2][4] : 0;
+  a02=arg[1]? arg[1][0] : 0;
+  a01=(a01*a02);
+  a02=arg[3]? arg[3][0] : 0;
+  a03=arg[2]? arg[2][7] : 0;
+  a04=arg[2]? arg[2][8] : 0;
+  a05=arg[0]? arg[0][0] : 0;
+  a06=arg[0]? arg[0][1] : 0;
+  a06=(a06*a00);
+  a07=(a05*a06);
+  a08=casadi_sq(a06);
+  a09=arg[2]? arg[2][10] : 0;
+  a08=(a08+a09);
+  a07=(a07/a08);
+  a09=(a04*a07);
+  a10=atan(a09);
+  a10=(a03*a10);
+  a11=sin(a10);
+  a11=(a02*a11);
+  a12=(a11*a00);
+  a01=(a01-a12);
+  a12=arg[2]? arg[2][3] : 0;
+  a01=(a01/a12);
+  a13=(a00*a01);
+  a14=arg[3]? arg[3][1] : 0;
+  a11=(a14*a11);
+  a13=(a13-a11);
+  if (res[0]!=0) res[0][0]=a13;
+  if (res[0]!=0) res[0][1]=a01;
+  a01=arg[2]? arg[2][0] : 0;
+  a01=(a01-a07);
+  if (res[0]!=0) res[0][2]=a01;
+  a10=cos(a10);
+  a01=(a06/a08);
+  a13=(a04*a01);
+  a11=1.;
+  a09=casadi_sq(a09);
+  a11=(a11+a09);
+  a13=(a13/a11);
+  a13=(a03*a13);
+  a13=(a10*a13);
+  a13=(a02*a13);
+  a09=(a00*a13);
+  a09=(a09/a12);
+  a15=(a00*a09);
+  a13=(a14*a13);
+  a15=(a15+a13);
+  a15=(-a15);
+  if (res[1]!=0) res[1][0]=a15;
+  a09=(-a09);
+  if (res[1]!=0) res[1][1]=a09;
+  a01=(-a01);
+  if (res[1]!=0) res[1][2]=a01;
+  a05=(a05*a00);
+  a05=(a05/a08);
+  a07=(a07/a08);
+  a06=(2.*a06);
+  a06=(a06*a00);
+  a07=(a07*a06);
+  a05=(a05-a07);
+  a04=(a04*a05);
+  a04=(a04/a11);
+  a03=(a03*a04);
+  a10=(a10*a03);
+  a02=(a02*a10);
+  a10=(a00*a02);
+  a10=(a10/a12);
+  a00=(a00*a10);
+  a14=(a14*a02);
+  a00=(a00+a14);
+  a00=(-a00);
+  if (res[1]!=0) res[1][3]=a00;
+  a10=(-a10);
+  if (res[1]!=0) res[1][4]=a10;
+  a05=(-a05);
+  if (res[1]!=0) res[1][5]=a05;
+  a05=arg[3]? arg[3][2] : 0;
+  if (res[1]!=0) res[1][6]=a05;
+  a05=arg[3]? arg[3][3] : 0;
+  if (res[1]!=0) res[1][7]=a05;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int wheel_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
+  return casadi_f1(arg, res, iw, w, mem);
+}
+
+CASADI_SYMBOL_EXPORT int wheel_rate_checkout(void) {
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT void wheel_rate_release(int mem) {
+}
+
+CASADI_SYMBOL_EXPORT void wheel_rate_incref(void) {
+}
+
+CASADI_SYMBOL_EXPORT void wheel_rate_decref(void) {
+}
+
+CASADI_SYMBOL_EXPORT casadi_int wheel_rate_n_in(void) { return 4;}
+
+CASADI_SYMBOL_EXPORT casadi_int wheel_rate_n_out(void) { return 2;}
+
+CASADI_SYMBOL_EXPORT casadi_real wheel_rate_default_in(casadi_int i) {
+  switch (i) {
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* wheel_rate_name_in(casadi_int i) {
   switch (i) {
     case 0: return "i0";
     case 1: return "i1";
     case 2: return "i2";
+    case 3: return "i3";
     default: return 0;
   }
 }
 
-CASADI_SYMBOL_EXPORT const char* wheel_step_name_out(casadi_int i) {
+CASADI_SYMBOL_EXPORT const char* wheel_rate_name_out(casadi_int i) {
   switch (i) {
     case 0: return "o0";
     case 1: return "o1";
@@ -575,49 +302,50 @@ CASADI_SYMBOL_EXPORT const char* wheel_step_name_out(casadi_int i) {
   }
 }
 
-CASADI_SYMBOL_EXPORT const casadi_int* wheel_step_sparsity_in(casadi_int i) {
+CASADI_SYMBOL_EXPORT const casadi_int* wheel_rate_sparsity_in(casadi_int i) {
   switch (i) {
-    case 0: return casadi_s0;
-    case 1: return casadi_s1;
-    case 2: return casadi_s2;
-    default: return 0;
-  }
-}
-
-CASADI_SYMBOL_EXPORT const casadi_int* wheel_step_sparsity_out(casadi_int i) {
-  switch (i) {
-    case 0: return casadi_s0;
+    case 0: return casadi_s2;
     case 1: return casadi_s3;
+    case 2: return casadi_s0;
+    case 3: return casadi_s1;
     default: return 0;
   }
 }
 
-CASADI_SYMBOL_EXPORT int wheel_step_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
-  if (sz_arg) *sz_arg = 3;
+CASADI_SYMBOL_EXPORT const casadi_int* wheel_rate_sparsity_out(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s2;
+    case 1: return casadi_s4;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT int wheel_rate_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 4;
   if (sz_res) *sz_res = 2;
   if (sz_iw) *sz_iw = 0;
   if (sz_w) *sz_w = 0;
   return 0;
 }
 
-CASADI_SYMBOL_EXPORT int wheel_step_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
-  if (sz_arg) *sz_arg = 3*sizeof(const casadi_real*);
+CASADI_SYMBOL_EXPORT int wheel_rate_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 4*sizeof(const casadi_real*);
   if (sz_res) *sz_res = 2*sizeof(casadi_real*);
   if (sz_iw) *sz_iw = 0*sizeof(casadi_int);
   if (sz_w) *sz_w = 0*sizeof(casadi_real);
   return 0;
 }
 
-/* wheel_slip:(i0[3],i1[12])->(o0,o1[1x2]) */
-static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+/* wheel_slip:(i0[3],i1[11])->(o0,o1[1x2]) */
+static int casadi_f2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a0, a1, a2, a3, a4, a5;
   a0=arg[0]? arg[0][0] : 0;
   a1=arg[0]? arg[0][1] : 0;
-  a2=arg[1]? arg[1][3] : 0;
+  a2=arg[1]? arg[1][2] : 0;
   a1=(a1*a2);
   a3=(a0*a1);
   a4=casadi_sq(a1);
-  a5=arg[1]? arg[1][11] : 0;
+  a5=arg[1]? arg[1][10] : 0;
   a4=(a4+a5);
   a3=(a3/a4);
   if (res[0]!=0) res[0][0]=a3;
@@ -635,7 +363,7 @@ static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int wheel_slip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f1(arg, res, iw, w, mem);
+  return casadi_f2(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int wheel_slip_checkout(void) {
@@ -679,16 +407,16 @@ CASADI_SYMBOL_EXPORT const char* wheel_slip_name_out(casadi_int i) {
 
 CASADI_SYMBOL_EXPORT const casadi_int* wheel_slip_sparsity_in(casadi_int i) {
   switch (i) {
-    case 0: return casadi_s0;
-    case 1: return casadi_s2;
+    case 0: return casadi_s2;
+    case 1: return casadi_s0;
     default: return 0;
   }
 }
 
 CASADI_SYMBOL_EXPORT const casadi_int* wheel_slip_sparsity_out(casadi_int i) {
   switch (i) {
-    case 0: return casadi_s1;
-    case 1: return casadi_s4;
+    case 0: return casadi_s3;
+    case 1: return casadi_s5;
     default: return 0;
   }
 }

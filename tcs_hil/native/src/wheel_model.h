@@ -17,24 +17,42 @@ extern "C" {
 #define casadi_int long long int
 #endif
 
-int wheel_step(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int wheel_step_checkout(void);
-void wheel_step_release(int mem);
-void wheel_step_incref(void);
-void wheel_step_decref(void);
-casadi_int wheel_step_n_in(void);
-casadi_int wheel_step_n_out(void);
-casadi_real wheel_step_default_in(casadi_int i);
-const char* wheel_step_name_in(casadi_int i);
-const char* wheel_step_name_out(casadi_int i);
-const casadi_int* wheel_step_sparsity_in(casadi_int i);
-const casadi_int* wheel_step_sparsity_out(casadi_int i);
-int wheel_step_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int wheel_step_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-#define wheel_step_SZ_ARG 3
-#define wheel_step_SZ_RES 2
-#define wheel_step_SZ_IW 0
-#define wheel_step_SZ_W 0
+int wheel_fold(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+int wheel_fold_checkout(void);
+void wheel_fold_release(int mem);
+void wheel_fold_incref(void);
+void wheel_fold_decref(void);
+casadi_int wheel_fold_n_in(void);
+casadi_int wheel_fold_n_out(void);
+casadi_real wheel_fold_default_in(casadi_int i);
+const char* wheel_fold_name_in(casadi_int i);
+const char* wheel_fold_name_out(casadi_int i);
+const casadi_int* wheel_fold_sparsity_in(casadi_int i);
+const casadi_int* wheel_fold_sparsity_out(casadi_int i);
+int wheel_fold_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+int wheel_fold_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+#define wheel_fold_SZ_ARG 1
+#define wheel_fold_SZ_RES 1
+#define wheel_fold_SZ_IW 0
+#define wheel_fold_SZ_W 0
+int wheel_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+int wheel_rate_checkout(void);
+void wheel_rate_release(int mem);
+void wheel_rate_incref(void);
+void wheel_rate_decref(void);
+casadi_int wheel_rate_n_in(void);
+casadi_int wheel_rate_n_out(void);
+casadi_real wheel_rate_default_in(casadi_int i);
+const char* wheel_rate_name_in(casadi_int i);
+const char* wheel_rate_name_out(casadi_int i);
+const casadi_int* wheel_rate_sparsity_in(casadi_int i);
+const casadi_int* wheel_rate_sparsity_out(casadi_int i);
+int wheel_rate_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+int wheel_rate_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+#define wheel_rate_SZ_ARG 4
+#define wheel_rate_SZ_RES 2
+#define wheel_rate_SZ_IW 0
+#define wheel_rate_SZ_W 0
 int wheel_slip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int wheel_slip_checkout(void);
 void wheel_slip_release(int mem);

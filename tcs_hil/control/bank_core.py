@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from tcs_hil.control.backend import chosen_backend
 from tcs_hil.control.plan import Plan
+from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.bank import KoopmanBank
-from tcs_hil.model.observables import Sample
 from tcs_hil.signals import ControllerKind
 
 FloatArray = NDArray[np.float64]
@@ -24,11 +24,12 @@ class BankCore(Protocol):
     x: FloatArray  # (NX,), rolled forward and planned from
 
     def observe(
-        self, now: Sample, vehicle_speed_mps: float, integral_s: float, disturbance_radps: float
+        self, wheel: WheelState, torque_nm: float, integral_s: float, disturbance_radps: float
     ) -> float:
-        """Set x to what is seen now, with the bands around this speed in charge.
+        """Set x to what is seen now, with the bands around the vehicle's speed in charge.
 
-        Returns the wheel speed one period later, in rad/s, without torque or disturbance.
+        ``torque_nm`` is the motor's, as well as it is known.  Returns the wheel speed one
+        period later, in rad/s, without torque or disturbance.
         """
         ...
 

@@ -11,7 +11,6 @@ from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.control.speed_disturbance import SpeedDisturbance
 from tcs_hil.model.bank import KoopmanBank
-from tcs_hil.model.observables import Sample
 
 
 class BankOptimiser:
@@ -23,10 +22,8 @@ class BankOptimiser:
     """
 
     def __init__(self, settings: ControlSettings, bank: KoopmanBank) -> None:
-        vehicle = bank.provenance.settings.vehicle
-        self._gear_ratio = vehicle.gear_ratio
         self._core = bank_core(settings, bank)
-        self._disturbance = SpeedDisturbance(settings, vehicle)
+        self._disturbance = SpeedDisturbance(settings, bank.provenance.settings.vehicle)
         self.reset()
 
     @property
@@ -44,11 +41,11 @@ class BankOptimiser:
     def observe(self, wheel: WheelState, integral_s: float) -> None:
         """The state is the one at the instant ``wheel`` describes; learns the disturbance."""
         self._disturbance.learn(wheel.wheel_speed_radps - self._expected_radps)
+        # Without a motor on the bus, what was sent to it is the best guess.
+        unknown = math.isnan(wheel.motor_torque_nm)
+        torque_nm = self._sent_nm if unknown else wheel.motor_torque_nm
         self._expected_radps = self._core.observe(
-            self._sample(wheel),
-            wheel.vehicle_speed_mps,
-            integral_s,
-            self._disturbance.value_radps,
+            wheel, torque_nm, integral_s, self._disturbance.value_radps
         )
 
     def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
@@ -59,12 +56,3 @@ class BankOptimiser:
         """Best torques (N,) in Nm within [0, torque_ref_nm]."""
         self._sent_nm = last_torque_nm
         return self._core.plan(last_torque_nm, torque_ref_nm)
-
-    def _sample(self, wheel: WheelState) -> Sample:
-        return Sample(
-            wheel.slip_speed_mps,
-            wheel.wheel_speed_radps,
-            wheel.motor_speed_radps / self._gear_ratio,
-            # Without a motor on the bus, what was sent to it is the best guess.
-            self._sent_nm if math.isnan(wheel.motor_torque_nm) else wheel.motor_torque_nm,
-        )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tcs_hil.control.bank_problem import DISTURBANCE, INTEGRAL, NX, UNIT_NM, BandCost, bands_of
 from tcs_hil.control.plan import Plan, mixed
+from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.qp import OsqpBox
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.bank import KoopmanBank, Share
@@ -34,13 +35,15 @@ class OsqpBank:
         self.x = np.zeros(NX)
 
     def observe(
-        self, now: Sample, vehicle_speed_mps: float, integral_s: float, disturbance_radps: float
+        self, wheel: WheelState, torque_nm: float, integral_s: float, disturbance_radps: float
     ) -> float:
         """Set x to what is seen now; returns the wheel speed expected one period later."""
+        motor_radps = wheel.motor_speed_radps / self._vehicle.gear_ratio
+        now = Sample(wheel.slip_speed_mps, wheel.wheel_speed_radps, motor_radps, torque_nm)
         self.x[:NZ] = lift_one(now, self._before or now, self._vehicle)
         self.x[INTEGRAL], self.x[DISTURBANCE] = integral_s, disturbance_radps
         self._before = now
-        self._settle(self._bank.shares(vehicle_speed_mps))
+        self._settle(self._bank.shares(wheel.vehicle_speed_mps))
         return float(self._a[Observable.WHEEL_SPEED, :NZ].dot(self.x[:NZ]))
 
     def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
@@ -88,7 +91,7 @@ class BandProblem:
         gradient = cost.gradient_map.dot(state) - cost.reduction_pull * torque_ref_nm
         gradient[0] -= cost.change_pull * last_torque_nm
         plan = self._qp.solve(gradient, 0.0, torque_ref_nm / UNIT_NM)
-        return plan._replace(inputs=plan.inputs * UNIT_NM)
+        return Plan(plan.inputs * UNIT_NM, plan.status, plan.iterations)
 
     def reset(self) -> None:
         """Forget the last solution."""

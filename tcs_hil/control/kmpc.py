@@ -46,32 +46,31 @@ class KoopmanOptimiser:
         slip_reference: float,
         box_qp: Callable[[FloatArray], BoxQp] = OsqpBox,
     ) -> None:
-        self._predictor = predictor
-        self._lifting = predictor.lifting
+        self._lifting, self._scaling = predictor.lifting, predictor.scaling
         self._slip_reference = slip_reference
-        self._reduction_pull = 2.0 * tuning.weight_reduction
         dense = condense(extend(predictor), tuning.horizon)
         hessian, gradient_map = quadratic_cost(dense, tuning)
-        self._gradient_map = np.ascontiguousarray(gradient_map)  # (N, nz + 2)
+        reduction_pull = np.full(len(hessian), 2.0 * tuning.weight_reduction)
+        self._gradient_map = np.column_stack((gradient_map, -reduction_pull))  # (N, nz + 3)
         self._qp = box_qp(hessian)
-        self._zero_torque = float(predictor.scale_input(0.0))
+        self._zero_torque = float(self._scaling.scale_torque(0.0))
 
     def plan(self, wheel: WheelState, integral_s: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm within [0, torque_ref_nm]."""
         z = self._lifting.observables(wheel.slip_speed_mps, wheel.wheel_speed_radps)
-        xi = np.array((*z, integral_s, self._slip_reference))  # (nz + 2,)
-        torque_ref = self._predictor.scale_input(torque_ref_nm)
-        gradient = self._gradient_map.dot(xi) - self._reduction_pull * torque_ref  # (N,)
-        inputs, status, iterations = self._qp.solve(gradient, self._zero_torque, torque_ref)
-        return Plan(self._in_nm(inputs), status, iterations)
+        torque_ref = self._scaling.scale_torque(torque_ref_nm)
+        gradient = self._gradient_map.dot(  # (N,)
+            np.array((*z, integral_s, self._slip_reference, torque_ref))
+        )
+        plan = self._qp.solve(gradient, self._zero_torque, torque_ref)
+        return Plan(self._in_nm(plan.inputs), plan.status, plan.iterations)
 
     def reset(self) -> None:
         """Forget the last plan."""
         self._qp.reset()
 
     def _in_nm(self, scaled_torques: FloatArray) -> FloatArray:
-        scaling = self._predictor.scaling
-        return scaled_torques * scaling.torque_std_nm + scaling.torque_mean_nm
+        return scaled_torques * self._scaling.torque_std_nm + self._scaling.torque_mean_nm
 
 
 def koopman_mpc(settings: ControlSettings, predictor: KoopmanPredictor) -> PredictiveController:

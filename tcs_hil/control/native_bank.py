@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from tcs_hil.control.bank_problem import UNIT_NM, Band, bands_of
-from tcs_hil.control.native_law import unpack_outcome
+from tcs_hil.control.native_law import plan_of
 from tcs_hil.control.plan import Plan
+from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
 from tcs_hil.model.bank import KoopmanBank
-from tcs_hil.model.observables import Sample
 from tcs_hil.native import array_of, core, doubles
 
 
@@ -30,11 +30,18 @@ class NativeBank:
         self._plan = array_of(self._struct.plan)[: settings.default.kmpc.horizon]  # (N,), Nm
 
     def observe(
-        self, now: Sample, vehicle_speed_mps: float, integral_s: float, disturbance_radps: float
+        self, wheel: WheelState, torque_nm: float, integral_s: float, disturbance_radps: float
     ) -> float:
         """Set x to what is seen now; returns the wheel speed expected one period later."""
         expected_radps: float = self._lib.bank_observe(
-            self._struct, vehicle_speed_mps, *now, integral_s, disturbance_radps
+            self._struct,
+            wheel.vehicle_speed_mps,
+            wheel.slip_speed_mps,
+            wheel.wheel_speed_radps,
+            wheel.motor_speed_radps / self._gear_ratio,
+            torque_nm,
+            integral_s,
+            disturbance_radps,
         )
         return expected_radps
 
@@ -45,7 +52,7 @@ class NativeBank:
     def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm within [0, torque_ref_nm] from x on; valid until the next."""
         outcome = self._lib.bank_plan(self._struct, last_torque_nm, torque_ref_nm)
-        return Plan(self._plan, *unpack_outcome(outcome))
+        return plan_of(self._plan, outcome)
 
     def reset(self) -> None:
         """Forget the last sample and the last plans."""
@@ -53,6 +60,7 @@ class NativeBank:
 
     def _describe(self, bank: KoopmanBank, band: Band) -> None:
         struct, car = self._struct, bank.provenance.settings.vehicle
+        self._gear_ratio = car.gear_ratio
         struct.bands, struct.band_count = self._bands, len(self._bands)
         struct.unit_nm = UNIT_NM
         struct.reduction_pull = band.cost.reduction_pull

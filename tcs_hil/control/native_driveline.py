@@ -8,7 +8,7 @@ from typing import Any
 
 from msgspec.structs import astuple
 
-from tcs_hil.control.native_law import unpack_outcome
+from tcs_hil.control.native_law import plan_of
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
@@ -41,7 +41,7 @@ class NativeDriveline:
         outcome = self._lib.driveline_plan(
             self._struct, last_torque_nm, torque_ref_nm, disturbance_n, urgency
         )
-        return Plan(self._plan, *unpack_outcome(outcome))
+        return plan_of(self._plan, outcome)
 
     def reset(self) -> None:
         """Forget the last plan."""

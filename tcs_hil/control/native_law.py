@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from array import array
 
+from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
 from tcs_hil.control.settings import ControlSettings
-from tcs_hil.native import core
+from tcs_hil.native import FloatArray, core
 
 _STATUS = tuple(SolveStatus)
 
 
-def unpack_outcome(outcome: int) -> tuple[SolveStatus, int]:
-    """Status and iterations, as C packs them into one integer."""
-    return _STATUS[outcome & 3], outcome >> 2
+def plan_of(inputs: FloatArray, outcome: int) -> Plan:
+    """Inputs (N,) and what came of them, as C packs it into one integer."""
+    return Plan(inputs, _STATUS[outcome & 3], outcome >> 2)
 
 
 class NativeLaw:

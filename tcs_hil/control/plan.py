@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +14,7 @@ from tcs_hil.control.protocol import SolveStatus
 FloatArray = NDArray[np.float64]
 
 
-class Plan(NamedTuple):
+class Plan(msgspec.Struct, frozen=True):
     """Inputs u_0..u_{N-1}; to be trusted unless the status is ``FAILED``.
 
     After ``MAX_ITERATIONS`` they lie in the box and are the best so far.

@@ -29,7 +29,7 @@ class Recorder:
 
     def plan(self, wheel: WheelState, integral_s: float, torque_ref_nm: float) -> Plan:
         plan = self.optimiser.plan(wheel, integral_s, torque_ref_nm)
-        kept = plan._replace(inputs=plan.inputs.copy())
+        kept = Plan(plan.inputs.copy(), plan.status, plan.iterations)
         self.calls.append(Call(wheel, integral_s, torque_ref_nm, kept))
         return plan
 

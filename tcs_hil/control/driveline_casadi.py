@@ -30,6 +30,10 @@ class CasadiCore:
         self._guess = np.zeros(len(tuning.blocks))  # (N,), Nm
         self.x = np.zeros(NX)
 
+    def start_from(self, x: Sequence[float]) -> None:
+        """Set x (7,)."""
+        self.x[:] = x
+
     def roll_forward(
         self, torques_nm: Sequence[float], first_periods: float, disturbance_n: float
     ) -> None:

@@ -25,6 +25,10 @@ class DrivelineCore(Protocol):
 
     x: FloatArray  # (7,), rolled forward and planned from
 
+    def start_from(self, x: Sequence[float]) -> None:
+        """Set x (7,)."""
+        ...
+
     def roll_forward(
         self, torques_nm: Sequence[float], first_periods: float, disturbance_n: float
     ) -> None:

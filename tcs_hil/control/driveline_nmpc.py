@@ -42,14 +42,16 @@ class DrivelineOptimiser:
         force_n = self._disturbance.update(wheel)
         gear, shaft_nm = self._vehicle.gear_ratio, force_n * self._vehicle.wheel_radius_m
         steady_twist_rad = shaft_nm / self._driveline.shaft_stiffness_nmprad
-        self._core.x[:] = (
-            wheel.slip_speed_mps,
-            wheel.wheel_speed_radps,
-            integral_s,
-            _or_else(wheel.motor_torque_nm, shaft_nm / gear),
-            wheel.motor_speed_radps / gear,
-            _or_else(wheel.shaft_twist_rad, steady_twist_rad),
-            force_n,
+        self._core.start_from(
+            (
+                wheel.slip_speed_mps,
+                wheel.wheel_speed_radps,
+                integral_s,
+                _or_else(wheel.motor_torque_nm, shaft_nm / gear),
+                wheel.motor_speed_radps / gear,
+                _or_else(wheel.shaft_twist_rad, steady_twist_rad),
+                force_n,
+            )
         )
 
     def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:

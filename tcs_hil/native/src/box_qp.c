@@ -69,13 +69,14 @@ int box_qp_setup(box_qp *qp, int n, const double *hessian) {
 /* slope = Hx + g.  Returns the size of what was added up: its rounding is in proportion. */
 static double slope_at_x(box_qp *qp, const double *g) {
     const int n = qp->n;
-    double size = 0.0;
+    double product[BOX_QP_MAX] = {0}, size = 0.0;
+    for (int j = 0; j < n; j++) { /* by columns, which are rows: no sum waits for the one before */
+        const double *column = qp->hessian + j * n, factor = qp->x[j];
+        for (int i = 0; i < n; i++) product[i] += column[i] * factor;
+    }
     for (int i = 0; i < n; i++) {
-        const double *row = qp->hessian + i * n;
-        double sum = 0.0;
-        for (int j = 0; j < n; j++) sum += row[j] * qp->x[j];
-        qp->slope[i] = sum + g[i];
-        size += fabs(sum) + fabs(g[i]);
+        qp->slope[i] = product[i] + g[i];
+        size += fabs(product[i]) + fabs(g[i]);
     }
     return size;
 }

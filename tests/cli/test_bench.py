@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
-
-def bench(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "tcs_hil", "bench", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+from cli.ended import TcsHil
 
 
-def test_bus_and_start_leave_their_figures_and_a_section(tmp_path: Path) -> None:
+def test_bus_and_start_leave_their_figures_and_a_section(tcs_hil: TcsHil, tmp_path: Path) -> None:
     readme = tmp_path / "README.md"
-    arguments = ("--quick", "--only", "bus,start", "--json", "--write", str(readme))
-    ended = bench(*arguments)
-    assert ended.returncode == 0, ended.stderr
-    result = json.loads(ended.stdout)
+    ended = tcs_hil("bench", "--quick", "--only", "bus,start", "--json", "--write", str(readme))
+    assert ended.status == 0, ended.err
+    result = json.loads(ended.out)
     (bus,) = result["bus"]
     assert bus["ticks"] > 0
     assert bus["baseline"]["samples"] == 500  # a second
@@ -28,9 +22,3 @@ def test_bus_and_start_leave_their_figures_and_a_section(tmp_path: Path) -> None
     page = readme.read_text()
     assert page.startswith("<!-- begin tcs-hil bench -->")
     assert "wake jitter without the service" in page
-
-
-def test_an_unknown_part_is_refused_with_the_parts_there_are() -> None:
-    ended = bench("--only", "warp")
-    assert ended.returncode == 2
-    assert "controllers, tick, scaling, bus, start" in ended.stderr

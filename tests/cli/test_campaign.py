@@ -1,6 +1,5 @@
 import json
-import subprocess
-import sys
+from functools import partial
 
 import pyarrow.parquet as pq
 import pytest
@@ -27,30 +26,26 @@ request = [[0.0, 200.0]]
 """
 
 
-def campaign(folder, *arguments):
-    return subprocess.run(
-        [sys.executable, "-m", "tcs_hil", "campaign", "study.toml", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=folder,
-    )
-
-
 def _known(rows):
     """Not a number equals nothing, itself included; JSON has null for it."""
     return [{k: v for k, v in row.items() if str(v) not in ("None", "nan")} for row in rows]
 
 
 @pytest.fixture
-def folder(tmp_path):
+def folder(tmp_path, monkeypatch):
     (tmp_path / "study.toml").write_text(STUDY)
     (tmp_path / "short.toml").write_text(SCENARIO + "[[road]]\nmu = 0.3\n")
+    monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
-def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(folder):
-    assert campaign(folder, "--points", "6", "--out", "out", "-j", "1").returncode == 0
+@pytest.fixture
+def campaign(tcs_hil, folder):
+    return partial(tcs_hil, "campaign", "study.toml")
+
+
+def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(campaign, folder):
+    assert campaign("--points", "6", "--out", "out", "-j", "1").status == 0
     table = folder / "out" / "campaign.parquet"
     first = pq.read_table(table).to_pylist()
     assert [row["index"] for row in first] == list(range(6))
@@ -59,13 +54,13 @@ def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(folder
     # As after an interruption: some rows in a part, no table yet.
     pq.write_table(pq.read_table(table).slice(0, 4), table.with_name("part-0000000.parquet"))
     table.unlink()
-    ended = campaign(folder, "--points", "6", "--out", "out", "-j", "1")
-    assert ended.returncode == 0, ended.stderr
+    ended = campaign("--points", "6", "--out", "out", "-j", "1")
+    assert ended.status == 0, ended.err
     assert _known(pq.read_table(table).to_pylist()) == _known(first)
 
-    again = ended.stdout.split("Drive one again: tcs-hil campaign study.toml ")[1].splitlines()[0]
+    again = ended.out.split("Drive one again: tcs-hil campaign study.toml ")[1].splitlines()[0]
     assert "--out out" in again
-    row = json.loads(campaign(folder, *again.split(), "--json").stdout)
+    row = json.loads(campaign(*again.split(), "--json").out)
     assert _known([row]) == _known([first[row["index"]]])
     for kept in ("toml", "service.toml"):
         assert (folder / "out" / f"point-{row['index']}.{kept}").is_file()
@@ -80,9 +75,6 @@ def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(folder
         ("sensors.pitch_error_ratio", [], "pitch_error_ratio"),  # 0.6 is beyond its bounds
     ],
 )
-def test_a_bad_study_is_refused_in_one_sentence(broken, arguments, named, folder):
+def test_a_bad_study_is_refused_in_one_sentence(broken, arguments, named, campaign, folder):
     (folder / "study.toml").write_text(STUDY.replace("road.0.mu", broken))
-    ended = campaign(folder, *arguments)
-    assert ended.returncode == 2
-    assert named in ended.stderr
-    assert len(ended.stderr.splitlines()) == 1
+    assert campaign(*arguments).is_one_sentence_about(named)

@@ -1,4 +1,7 @@
-"""`tcs-hil doctor` examines the machine the tests run on, whatever it is like."""
+"""`tcs-hil doctor` examines the machine the tests run on, whatever it is like.
+
+In a process of its own, as it takes real-time priority and turns the garbage collector off.
+"""
 
 from __future__ import annotations
 

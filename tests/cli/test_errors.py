@@ -1,23 +1,15 @@
 """Every mistake of the user: one sentence on stderr, exit status 2, no traceback."""
 
-import sys
 from pathlib import Path
 
 import pytest
+from cli.ended import TcsHil
 
 from tcs_hil import cli
 from tcs_hil.model.dataset import DatasetSettings
 from tcs_hil.model.edmd import IdentificationSettings, identify
 
 SMALL = DatasetSettings(trajectories=20, samples=20, period_s=0.001)
-
-
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, *arguments: str):
-    monkeypatch.setattr(sys, "argv", ["tcs-hil", *arguments])
-    with pytest.raises(SystemExit) as end:
-        cli.main()
-    output = capsys.readouterr()
-    return end.value.code, output.out, output.err
 
 
 @pytest.fixture
@@ -55,6 +47,10 @@ def bad_files(tmp_path: Path) -> dict[str, Path]:
         (("run", "--config", "nowhere.toml"), "nowhere.toml"),
         (("run", "--phase-us", "-1"), "phase_us"),
         (("run", "--channel", "can77"), "can77"),
+        (("run", "--channel", "can77", "--priority=0"), "tick.priority"),
+        (("run", "--channel", "can77", "--spin-us=5000"), "tick.spin_us"),
+        (("run", "--channel", "can77", "--cpu=-1"), "tick.cpu"),
+        (("bench", "--only", "warp"), "controllers, tick, scaling, bus, start"),
         (("run", "--interface", "telepathy"), "telepathy"),
         (("run", "--model", "nowhere.npz"), "nowhere.npz"),
         (("report", "nowhere.tcsrec"), "nowhere.tcsrec"),
@@ -63,18 +59,14 @@ def bad_files(tmp_path: Path) -> dict[str, Path]:
     ],
 )
 def test_a_bad_command_line_is_refused_in_one_sentence(
+    tcs_hil: TcsHil,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture,
     tmp_path: Path,
     arguments: tuple[str, ...],
     culprit: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    status, _, error = run(monkeypatch, capsys, *arguments)
-    assert status == 2
-    assert error.startswith("tcs-hil: error: ")
-    assert culprit in error
-    assert error.count("\n") == 1
+    assert tcs_hil(*arguments).is_one_sentence_about(culprit)
 
 
 @pytest.mark.parametrize(
@@ -90,44 +82,27 @@ def test_a_bad_command_line_is_refused_in_one_sentence(
     ],
 )
 def test_a_bad_configuration_is_refused_in_one_sentence(
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture,
-    bad_files: dict[str, Path],
-    name: str,
-    culprit: str,
+    tcs_hil: TcsHil, bad_files: dict[str, Path], name: str, culprit: str
 ) -> None:
-    status, _, error = run(monkeypatch, capsys, "run", "--config", str(bad_files[name]))
-    assert status == 2
-    assert culprit in error
-    assert error.count("\n") == 1
+    assert tcs_hil("run", "--config", str(bad_files[name])).is_one_sentence_about(culprit)
 
 
-def test_a_model_for_another_sampling_time_is_refused(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, other_period: Path
-) -> None:
-    status, _, error = run(
-        monkeypatch, capsys, "run", "--preset", "paper", "--model", str(other_period)
-    )
-    assert status == 2
-    assert "fast.npz" in error
-    assert "0.001" in error
+def test_a_model_for_another_sampling_time_is_refused(tcs_hil: TcsHil, other_period: Path) -> None:
+    refusal = tcs_hil("run", "--preset", "paper", "--model", str(other_period))
+    assert refusal.is_one_sentence_about("fast.npz", "0.001")
 
 
 @pytest.mark.parametrize("name", list(cli.COMMANDS))
-def test_every_command_explains_itself_with_an_example(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, name: str
-) -> None:
-    status, output, _ = run(monkeypatch, capsys, name, "--help")
-    assert status == 0
-    assert f"tcs-hil {name}" in output.partition("Example:")[2]
+def test_every_command_explains_itself_with_an_example(tcs_hil: TcsHil, name: str) -> None:
+    ended = tcs_hil(name, "--help")
+    assert ended.status == 0
+    assert f"tcs-hil {name}" in ended.out.partition("Example:")[2]
 
 
-def test_the_list_of_commands_is_shown_without_arguments(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
-    status, _, error = run(monkeypatch, capsys)
-    assert status == 2
-    assert all(name in error for name in cli.COMMANDS)
+def test_the_list_of_commands_is_shown_without_arguments(tcs_hil: TcsHil) -> None:
+    ended = tcs_hil()
+    assert ended.status == 2
+    assert all(name in ended.err for name in cli.COMMANDS)
 
 
 @pytest.mark.parametrize(
@@ -141,18 +116,10 @@ def test_the_list_of_commands_is_shown_without_arguments(
     ],
 )
 def test_numbers_beyond_any_car_are_refused_before_the_work(
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture,
-    tmp_path: Path,
-    text: str,
-    culprit: str,
+    tcs_hil: TcsHil, tmp_path: Path, text: str, culprit: str
 ) -> None:
-    settings = tmp_path / "identify.toml"
+    settings, output = tmp_path / "identify.toml", tmp_path / "model.npz"
     settings.write_text(text)
-    status, _, error = run(
-        *(monkeypatch, capsys, "identify", "--preset", "paper"),
-        *("--settings", str(settings), "--output", str(tmp_path / "model.npz")),
-    )
-    assert status == 2
-    assert culprit in error
-    assert not (tmp_path / "model.npz").exists()
+    identified = ("--preset", "paper", "--settings", str(settings), "--output", str(output))
+    assert tcs_hil("identify", *identified).is_one_sentence_about(culprit)
+    assert not output.exists()

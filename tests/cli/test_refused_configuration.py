@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import shutil
-import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import msgspec
 import pytest
+from cli.ended import TcsHil
 from msgspec.structs import fields
 
-from tcs_hil import cli
 from tcs_hil.model.bank import default_bank_path
 from tcs_hil.model.bank_identification import identify_bank
 from tcs_hil.model.bank_provenance import BandSettings, BankSettings
@@ -29,26 +28,10 @@ CORRUPTIONS: dict[str, Callable[[bytes], bytes]] = {
 }
 
 
-class Refusal(NamedTuple):
-    status: int
-    error: str
-
-
-Refused = Callable[..., Refusal]
-
-
 @pytest.fixture
-def refused(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Refused:
-    """Run ``tcs-hil run`` with these arguments in this process and return how it ended."""
-
-    def run(*arguments: str) -> Refusal:
-        # What is not refused ends at a bus that is not there, and not never.
-        monkeypatch.setattr(sys, "argv", ["tcs-hil", "run", "--channel", NO_BUS, *arguments])
-        with pytest.raises(SystemExit) as end:
-            cli.main()
-        return Refusal(end.value.code, capsys.readouterr().err)
-
-    return run
+def refused(tcs_hil: TcsHil) -> TcsHil:
+    """Start the service; what is not refused ends at a bus that is not there, and not never."""
+    return partial(tcs_hil, "run", "--channel", NO_BUS)
 
 
 def tables(struct: msgspec.Struct, keys: Keys = ()) -> Iterator[tuple[Keys, msgspec.Struct]]:
@@ -80,29 +63,23 @@ def flipped(content: bytes, place: int) -> bytes:
     return content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
 
 
-def is_one_sentence_about(refusal: Refusal, *culprits: str) -> bool:
-    told = refusal.error.startswith("tcs-hil: error: ") and refusal.error.count("\n") == 1
-    return refusal.status == 2 and told and all(culprit in refusal.error for culprit in culprits)
-
-
 @pytest.mark.parametrize("keys", [keys for keys, _ in tables(ServiceConfig())], ids=".".join)
 def test_an_unknown_key_is_refused_in_every_table(
-    refused: Refused, tmp_path: Path, keys: Keys
+    refused: TcsHil, tmp_path: Path, keys: Keys
 ) -> None:
     path = tmp_path / "service.toml"
     path.write_text(toml((*keys, "torque_vectoring"), "true"))
-    assert is_one_sentence_about(
-        refused("--config", str(path)), str(path), *keys, "unknown key `torque_vectoring`"
-    )
+    refusal = refused("--config", str(path))
+    assert refusal.is_one_sentence_about(str(path), *keys, "unknown key `torque_vectoring`")
 
 
 @pytest.mark.parametrize(("keys", "value"), list(numbers()), ids=str)
 def test_a_number_out_of_its_bounds_is_refused(
-    refused: Refused, tmp_path: Path, keys: Keys, value: str
+    refused: TcsHil, tmp_path: Path, keys: Keys, value: str
 ) -> None:
     path = tmp_path / "service.toml"
     path.write_text(toml(keys, value))
-    assert is_one_sentence_about(refused("--config", str(path)), str(path), ".".join(keys))
+    assert refused("--config", str(path)).is_one_sentence_about(str(path), ".".join(keys))
 
 
 @pytest.mark.parametrize(
@@ -116,31 +93,31 @@ def test_a_number_out_of_its_bounds_is_refused(
     ],
 )
 def test_a_choice_that_is_none_is_refused(
-    refused: Refused, tmp_path: Path, text: str, key: str
+    refused: TcsHil, tmp_path: Path, text: str, key: str
 ) -> None:
     path = tmp_path / "service.toml"
     path.write_text(text)
-    assert is_one_sentence_about(refused("--config", str(path)), str(path), key)
+    assert refused("--config", str(path)).is_one_sentence_about(str(path), key)
 
 
 @pytest.mark.parametrize("damage", CORRUPTIONS)
 def test_a_model_file_that_is_not_as_it_was_written_is_refused(
-    refused: Refused, tmp_path: Path, damage: str
+    refused: TcsHil, tmp_path: Path, damage: str
 ) -> None:
     path = tmp_path / "bank.npz"
     content = Path(default_bank_path()).read_bytes()
     path.write_bytes(CORRUPTIONS[damage](content))
     assert path.read_bytes() != content
-    assert is_one_sentence_about(refused("--model", str(path)), str(path))
+    assert refused("--model", str(path)).is_one_sentence_about(str(path))
 
 
-def test_the_shipped_model_file_passes_the_same_check(refused: Refused, tmp_path: Path) -> None:
+def test_the_shipped_model_file_passes_the_same_check(refused: TcsHil, tmp_path: Path) -> None:
     path = tmp_path / "bank.npz"
     shutil.copy(default_bank_path(), path)
-    assert is_one_sentence_about(refused("--model", str(path)), NO_BUS)
+    assert refused("--model", str(path)).is_one_sentence_about(NO_BUS)
 
 
-def test_a_bank_made_for_another_sampling_time_is_refused(refused: Refused, tmp_path: Path) -> None:
+def test_a_bank_made_for_another_sampling_time_is_refused(refused: TcsHil, tmp_path: Path) -> None:
     path = tmp_path / "bank.npz"
     tiny = BankSettings(
         period_s=0.001,
@@ -148,14 +125,14 @@ def test_a_bank_made_for_another_sampling_time_is_refused(refused: Refused, tmp_
         excitation=ExcitationSettings(runs=8, samples=40),
     )
     identify_bank(tiny, 1).save(path)
-    assert is_one_sentence_about(refused("--model", str(path)), str(path), "0.001 s, not 0.002 s")
+    assert refused("--model", str(path)).is_one_sentence_about(str(path), "0.001 s, not 0.002 s")
 
 
 @pytest.mark.parametrize("period_s", [0.001, 0.004])
 def test_a_period_that_is_not_the_cycle_of_the_limits_is_refused(
-    refused: Refused, tmp_path: Path, period_s: float
+    refused: TcsHil, tmp_path: Path, period_s: float
 ) -> None:
     path = tmp_path / "service.toml"
     path.write_text(f"controller = 'pi'\n[control]\nperiod_s = {period_s}")
     refusal = refused("--config", str(path))
-    assert is_one_sentence_about(refusal, "control.period_s", str(period_s), "TorqueLimit")
+    assert refusal.is_one_sentence_about("control.period_s", str(period_s), "TorqueLimit")

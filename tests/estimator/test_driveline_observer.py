@@ -81,9 +81,10 @@ def test_the_unrolled_filter_is_the_textbook_one() -> None:
     rng = np.random.default_rng(7)
     observer = DrivelineObserver(LINE, PERIOD_S)
     (a, b), x, input_nm = discretised(LINE, PERIOD_S), np.zeros(4), 0.0
+    gain = kalman_gain(a)
     observer.update(0.0, 0.0)
     for torque_nm, speed_radps in zip(*rng.uniform(0.0, 600.0, (2, 500)), strict=True):
         predicted = a @ x + b * 0.5 * (input_nm + torque_nm)
-        x = predicted + kalman_gain(a) * (speed_radps - predicted[1])
+        x = predicted + gain * (speed_radps - predicted[1])
         input_nm = torque_nm
         assert observer.update(torque_nm, speed_radps) == pytest.approx(x.tolist(), rel=1e-9)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import uuid
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -26,7 +27,7 @@ _folder = TemporaryDirectory(prefix="tcs-hil-tests.")
 @cache
 def launch(mode: Mode = "in-process") -> Evidence:
     """The launch under the PI; each mode is driven once."""
-    bus = BusSettings(interface="embedded", channel=f"vcan-launch-{mode}")
+    bus = BusSettings(interface="embedded", channel=f"vcan-{uuid.uuid4().hex[:8]}")
     config = ServiceConfig(controller="pi", bus=bus)
     plan = RunPlan(LAUNCH, config, mode, Path(_folder.name) / mode)
     return Evidence(execute(plan), LAUNCH, config, mode)

@@ -167,17 +167,3 @@ def test_a_second_daemon_on_the_channel_is_refused_and_the_first_named(
             refused.stderr,
         )
         limits(stranger, 10)
-
-
-@pytest.mark.parametrize("option", ["--priority=0", "--spin-us=5000", "--cpu=-1"])
-def test_an_impossible_tick_is_refused_before_the_bus_is_opened(
-    channel: str, tmp_path: Path, option: str
-) -> None:
-    ended = subprocess.run(
-        [sys.executable, "-m", "tcs_hil", "run", "--channel", channel, option],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert ended.returncode == 2
-    assert f"tick.{option[2:].partition('=')[0].replace('-', '_')}" in ended.stderr

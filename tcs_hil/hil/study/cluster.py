@@ -35,7 +35,8 @@ def workers(scheduler: str | None, processes: int | None) -> Iterator[Client]:
             LocalCluster(  # type: ignore[no-untyped-call]
                 n_workers=processes or os.cpu_count(),
                 threads_per_worker=1,
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",  # None would be 8787, which another study may have
+                scheduler_kwargs={"dashboard": False},
                 silence_logs=40,
             ) as cluster,
             Client(cluster) as client,  # type: ignore[no-untyped-call]

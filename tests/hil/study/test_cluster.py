@@ -7,6 +7,7 @@ from contextlib import ExitStack, contextmanager
 import pytest
 
 from tcs_hil.errors import ConfigError
+from tcs_hil.hil.study import cluster
 from tcs_hil.hil.study.cluster import BATCH, drive, workers
 from tcs_hil.hil.study.design import points
 
@@ -25,7 +26,7 @@ def program(*arguments):
 
 
 @pytest.fixture
-def cluster():
+def two_workers():
     """Address of a scheduler, and its two workers."""
     with ExitStack() as stack:
         options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--no-show")
@@ -37,8 +38,8 @@ def cluster():
         yield address, both
 
 
-def test_a_worker_that_is_killed_costs_no_row(cluster, plan):
-    address, (first, _) = cluster
+def test_a_worker_that_is_killed_costs_no_row(two_workers, plan):
+    address, (first, _) = two_workers
     chosen = plan(points=8 * BATCH)
     tasks = list(enumerate(points(chosen.study)))
     with workers(address, None) as client:
@@ -51,7 +52,8 @@ def test_a_worker_that_is_killed_costs_no_row(cluster, plan):
     assert all(row["error"] == "" for row in rows)
 
 
-def test_a_scheduler_that_is_not_there_is_named():
+def test_a_scheduler_that_is_not_there_is_named(monkeypatch):
+    monkeypatch.setattr(cluster, "CONNECT_S", 0.5)  # a user is given time to start one
     with (
         pytest.raises(ConfigError, match=r"--scheduler tcp:\S+ nobody answers"),
         workers("tcp://127.0.0.1:9", None),

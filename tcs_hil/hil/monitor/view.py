@@ -51,6 +51,7 @@ class Monitor(App[TcsError]):
         self._in_control = in_control
         self._control = AS_IN_SCENARIO
         self._request_nm = 0.0
+        self._panels: dict[str, Static] = {}
 
     @property
     def control(self) -> BenchControl:
@@ -72,9 +73,11 @@ class Monitor(App[TcsError]):
 
     def on_mount(self) -> None:
         """Name the panels and begin to draw."""
+        # Held on to: a timer may still go off while the screen is being taken down.
+        self._panels = {str(panel.id): panel for panel in self.query(Static)}
         for name, title in TITLES.items():
-            self._panel(name).border_title = title
-        self.query_one("#hand").display = self._in_control
+            self._panels[name].border_title = title
+        self._panels["hand"].display = self._in_control
         self.set_interval(DRAW_PERIOD_S, self.redraw)
         self.call_after_refresh(self.redraw)  # sizes are known only then
 
@@ -91,18 +94,15 @@ class Monitor(App[TcsError]):
         except TcsError as error:
             self.exit(error)
             return
-        self._panel("hand").update(panels.hand(self._control))
+        self._panels["hand"].update(panels.hand(self._control))
         if snapshot is None:
             return
         self._request_nm = max(snapshot.left.request_nm, snapshot.right.request_nm)
-        self._panel("head").update(panels.head(snapshot))
-        self._panel("timing").border_subtitle = snapshot.source
-        self._panel("slip-numbers").update(panels.slip_numbers(snapshot))
-        self._panel("torque-numbers").update(panels.torque_numbers(snapshot))
-        self._panel("timing").update(panels.timing(snapshot))
+        self._panels["head"].update(panels.head(snapshot))
+        self._panels["timing"].border_subtitle = snapshot.source
+        self._panels["slip-numbers"].update(panels.slip_numbers(snapshot))
+        self._panels["torque-numbers"].update(panels.torque_numbers(snapshot))
+        self._panels["timing"].update(panels.timing(snapshot))
         for name, draw in (("slip", panels.slip_plot), ("torque", panels.torque_plot)):
-            size = self._panel(name).content_size
-            self._panel(name).update(draw(points, size.width, size.height))
-
-    def _panel(self, name: str) -> Static:
-        return self.query_one(f"#{name}", Static)
+            size = self._panels[name].content_size
+            self._panels[name].update(draw(points, size.width, size.height))

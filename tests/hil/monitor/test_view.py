@@ -143,6 +143,15 @@ def test_q_ends_it() -> None:
     assert not app.is_running
 
 
+def test_a_timer_that_goes_off_once_the_panels_are_gone_does_no_harm() -> None:
+    app = Monitor(Canned(), in_control=True)
+
+    async def act(_pilot: Pilot[TcsError]) -> None:
+        await app.query("*").remove()
+
+    assert not any(line.strip() for line in piloted(app, act))
+
+
 def test_a_source_that_is_gone_ends_it_with_its_sentence() -> None:
     gone = TcsError("the recording is gone")
     app = Monitor(Canned(gone), in_control=False)

@@ -4,7 +4,14 @@ from typing import Any
 
 from msgspec.structs import replace
 
-from tcs_hil.signals import Measurement
+from tcs_hil.signals import (
+    NO_LIMIT,
+    Command,
+    ControllerKind,
+    Measurement,
+    TcsState,
+    TorqueLimits,
+)
 
 ROLLING_RADPS = 20.0
 
@@ -22,5 +29,19 @@ def measurement(**changes: Any) -> Measurement:
         rear_speed_age_s=0.001,
         motor_age_s=0.001,
         driver_age_s=0.004,
+    )
+    return replace(good, **changes)
+
+
+def command(left_nm: float, right_nm: float, **changes: Any) -> Command:
+    """The NMPC holds each motor that has a limit."""
+    good = Command(
+        limits=TorqueLimits(left_nm, right_nm),
+        active=(left_nm < NO_LIMIT, right_nm < NO_LIMIT),
+        state=TcsState.ACTIVE,
+        fault_code=0,
+        controller=ControllerKind.NMPC,
+        slip_ratio=(0.1, 0.1),
+        slip_reference=0.1,
     )
     return replace(good, **changes)

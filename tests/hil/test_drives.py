@@ -7,6 +7,7 @@ from pathlib import Path
 import can
 import numpy as np
 import pytest
+from factories import command
 
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
@@ -16,8 +17,6 @@ from tcs_hil.errors import ConfigError
 from tcs_hil.hil.drives import CSV_COLUMNS, read_drive
 from tcs_hil.model.excitation import Runs
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.pipeline import Command
-from tcs_hil.signals import ControllerKind, TcsState, TorqueLimits
 
 PERIOD_NS, DELAY, TICKS = 2_000_000, 3, 400
 SETTINGS, VEHICLE = ControlSettings(), Vehicle()
@@ -51,18 +50,6 @@ def signals(torque_nm: float) -> VehicleSignals:
     )
 
 
-def command(limit_nm: float) -> Command:
-    return Command(
-        limits=TorqueLimits(limit_nm, limit_nm),
-        active=(True, True),
-        state=TcsState.ACTIVE,
-        fault_code=0,
-        controller=ControllerKind.PI,
-        slip_ratio=(0.1, 0.1),
-        slip_reference=0.1,
-    )
-
-
 @pytest.fixture(scope="module", params=["drive.blf", "drive.mf4"])
 def log(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("drives") / request.param
@@ -74,7 +61,8 @@ def log(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         for tick in range(TICKS):
             now_ns = tick * PERIOD_NS
             sent = sorted(car.frames(signals(torque[tick]), now_ns))
-            sent += service.frames(command(limits[tick]), now_ns)
+            limit_nm = float(limits[tick])
+            sent += service.frames(command(limit_nm, limit_nm), now_ns)
             for offset, (frame_id, data) in enumerate(sent):
                 stamp_s = 1e-9 * now_ns + 1e-5 * offset
                 write(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from factories import command
 
 from plant_emulator.plant import Plant
 from plant_emulator.scenario import Scenario, load_scenario
@@ -12,19 +13,6 @@ from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.port import CanPort
 from tcs_hil.canbus.tcs_node import TcsNode
-from tcs_hil.signals import Command, ControllerKind, TcsState, TorqueLimits
-
-
-def make_command(limit_nm):
-    return Command(
-        limits=TorqueLimits(limit_nm, limit_nm),
-        active=(True, True),
-        state=TcsState.ACTIVE,
-        fault_code=0,
-        controller=ControllerKind.PI,
-        slip_ratio=(0.0, 0.0),
-        slip_reference=0.1,
-    )
 
 
 class ScriptedService:
@@ -61,7 +49,7 @@ class ScriptedService:
     def _answer(self, tick):
         now_ns = tick * 2_000_000
         self.measurements.append(self._node.measurement(now_ns))
-        for frame in self._node.frames(make_command(self._limit_nm), now_ns):
+        for frame in self._node.frames(command(self._limit_nm, self._limit_nm), now_ns):
             self._port.send(*frame)
         self._port.send(*self._node.bench_tick_done(tick))
 
@@ -89,16 +77,10 @@ def service():
 
 
 @pytest.fixture
-def command():
-    """Make what a service says when it limits both motors: ``command(limit_nm)``."""
-    return make_command
-
-
-@pytest.fixture
 def command_frame():
     """Make the frame that carries a torque limit: ``command_frame(limit_nm)``."""
     node = TcsNode(load_database())
-    return lambda limit_nm: node.frames(make_command(limit_nm), 0)[-1]
+    return lambda limit_nm: node.frames(command(limit_nm, limit_nm), 0)[-1]
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import msgspec
 import pytest
+from factories import command
 
 from plant_emulator.bench_control import PREPARED
 from plant_emulator.emulator import PERIOD_NS, Emulator
@@ -63,7 +64,7 @@ class Bench:
 
 
 @pytest.fixture
-def bench(command):
+def bench():
     """Make a bench whose driver asks for 50 Nm on mu 1: ``bench(allow_control=False)``."""
 
     def make(*, faults=(), **options):
@@ -72,7 +73,7 @@ def bench(command):
         scenario = msgspec.structs.replace(
             scenario, driver=driver, start_speed_kmph=20.0, fault=faults
         )
-        return Bench(scenario, command(400.0), **options)
+        return Bench(scenario, command(400.0, 400.0), **options)
 
     return make
 

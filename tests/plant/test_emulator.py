@@ -5,6 +5,7 @@ from collections import Counter
 import msgspec
 import numpy as np
 import pytest
+from factories import command
 
 from plant_emulator.bustiming import BusTiming
 from plant_emulator.emulator import PERIOD_NS, Emulator
@@ -45,7 +46,7 @@ class Bench:
 
 
 @pytest.fixture
-def bench(command):
+def bench():
     """Make a bench for a whole car launched at full throttle from 20 km/h: ``bench(bus={...})``."""
 
     def make(limit_nm=40.0, **changes):
@@ -54,7 +55,7 @@ def bench(command):
         scenario = msgspec.structs.replace(
             scenario, driver=driver, start_speed_kmph=20.0, **changes
         )
-        return Bench(scenario, command(limit_nm))
+        return Bench(scenario, command(limit_nm, limit_nm))
 
     return make
 
@@ -138,9 +139,9 @@ def test_a_babbling_node_fills_the_wire_but_not_for_ever(bench):
 
 
 @pytest.mark.parametrize("name", [listing.name for listing in list_scenarios()])
-def test_every_shipped_scenario_drives(name, command):
+def test_every_shipped_scenario_drives(name):
     scenario = load_scenario(name)
-    rows = Bench(scenario, command(110.0)).run(600)
+    rows = Bench(scenario, command(110.0, 110.0)).run(600)
     for field in ("speed_mps", "slip_ratio", "force_n", "load_n", "motor_torque_nm"):
         assert np.isfinite(rows[field]).all()
     assert rows["load_n"].min() > 1000.0

@@ -11,8 +11,6 @@ import math
 
 import pytest
 
-from tcs_hil.canbus.mapping.node import MappedNode
-from tcs_hil.service.bus_end import bus_end
 from tcs_hil.signals import (
     NO_LIMIT,
     Command,
@@ -23,6 +21,7 @@ from tcs_hil.signals import (
 )
 
 from .makers import AURELIS, MONTANE, QUENDAL, Maker, crc8
+from .mapped import node_of
 
 KMPH = 1.0 / 3.6 / 0.318  # rad/s of a wheel of 318 mm
 RPM = 2.0 * math.pi / 60.0
@@ -35,12 +34,6 @@ COMMAND = Command(
     slip_ratio=(0.1, 0.1),
     slip_reference=0.1,
 )
-
-
-def node_of(maker: Maker) -> MappedNode:
-    node = bus_end(maker.config()).node
-    assert isinstance(node, MappedNode)
-    return node
 
 
 def heard(maker: Maker, *frames: tuple[int, str]) -> Measurement:

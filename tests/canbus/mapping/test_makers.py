@@ -5,21 +5,17 @@ from __future__ import annotations
 import math
 
 import pytest
-from factories import measurement
+from factories import command, measurement
 
-from tcs_hil.canbus.mapping.node import MappedNode
-from tcs_hil.service.bus_end import bus_end, examine_map
+from tcs_hil.service.bus_end import examine_map
 from tcs_hil.signals import (
     NO_LIMIT,
-    Command,
-    ControllerKind,
     InputState,
     Measurement,
-    TcsState,
-    TorqueLimits,
 )
 
 from .makers import AURELIS, MAKERS, MONTANE, QUENDAL, Car, Maker
+from .mapped import node_of
 
 PERIOD_NS = 2_000_000
 SEEN = measurement(
@@ -29,24 +25,6 @@ SEEN = measurement(
     driver_torque_nm=(100.0, 100.0),
     accel_x_mps2=1.5,
 )
-
-
-def command(left_nm: float, right_nm: float) -> Command:
-    return Command(
-        limits=TorqueLimits(left_nm, right_nm),
-        active=(left_nm < NO_LIMIT, right_nm < NO_LIMIT),
-        state=TcsState.ACTIVE,
-        fault_code=0,
-        controller=ControllerKind.NMPC,
-        slip_ratio=(0.1, 0.1),
-        slip_reference=0.1,
-    )
-
-
-def node_of(maker: Maker) -> MappedNode:
-    node = bus_end(maker.config()).node
-    assert isinstance(node, MappedNode)
-    return node
 
 
 def after(maker: Maker, ticks: int, seen: Measurement = SEEN) -> Measurement:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 import tomllib
-from typing import Any
 
 import pytest
-from factories import measurement
+from factories import command, measurement
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from tcs_hil.canbus.mapping.node import MappedNode
 from tcs_hil.config import convert
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.seams import Node
@@ -21,20 +19,11 @@ from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.signals import BusCondition, InputState
 
 from .makers import AURELIS, GRAVITY_MPS2, KMPH, MAKERS, MONTANE, QUENDAL, Car, Maker
-from .test_makers import command
+from .mapped import node_of
 
 MS = 1_000_000
 PERIOD_NS = 2 * MS
 SEEN = measurement(accel_x_mps2=1.0)
-
-
-def node_of(maker: Maker, **tables: Any) -> MappedNode:
-    """The maker's node; ``tables`` replace parts of the map."""
-    config = tomllib.loads(maker.toml.read_text())
-    config["map"] |= tables
-    node = bus_end(convert(config, ServiceConfig, "test")).node
-    assert isinstance(node, MappedNode)
-    return node
 
 
 def live(node: Node, maker: Maker, ticks: int = 20) -> Car:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from factories import command
+
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
-from tcs_hil.signals import Command, ControllerKind, TcsState
 
 from .makers import Car, Maker
 
@@ -31,13 +32,4 @@ class Translator:
         limits = self._car.limits(frame_id, data)
         if limits is None:
             return None
-        command = Command(
-            limits=limits,
-            active=(False, False),
-            state=TcsState.ACTIVE,
-            fault_code=0,
-            controller=ControllerKind.OFF,
-            slip_ratio=(0.0, 0.0),
-            slip_reference=0.0,
-        )
-        return self._ears.frames(command, 0)[-1]
+        return self._ears.frames(command(*limits), 0)[-1]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import can
 import numpy as np
+from factories import command
 from msgspec.structs import replace
 from runtime.fakes import RUN, insight, made_pass
 
@@ -16,7 +17,7 @@ from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
 from tcs_hil.hil.run import RunFiles
 from tcs_hil.runtime.record import record
 from tcs_hil.runtime.recorder import FlightRecorder
-from tcs_hil.signals import Command, ControllerKind, TcsState, TorqueLimits
+from tcs_hil.signals import NO_LIMIT, Command, ControllerKind
 
 TICKS, PERIOD_NS = 40, 2_000_000
 STARTED_MONOTONIC_NS = 500_000_000_000
@@ -79,14 +80,8 @@ def _signals(tick: int) -> VehicleSignals:
 
 
 def _command(tick: int) -> Command:
-    return Command(
-        limits=TorqueLimits(limit_nm(tick)),
-        active=(True, False),
-        state=TcsState.ACTIVE,
-        fault_code=0,
-        controller=ControllerKind.PI,
-        slip_ratio=(0.1, -0.05),
-        slip_reference=0.1,
+    return command(
+        *(limit_nm(tick), NO_LIMIT), controller=ControllerKind.PI, slip_ratio=(0.1, -0.05)
     )
 
 

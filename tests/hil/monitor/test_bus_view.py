@@ -1,6 +1,7 @@
 """From frames of both nodes to what is shown, without a bus."""
 
 import pytest
+from factories import command
 
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
@@ -8,7 +9,7 @@ from tcs_hil.canbus.vehicle_node import VehicleNode, VehicleSignals
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.hil.monitor.bus_view import BusView
 from tcs_hil.hil.monitor.snapshot import Snapshot
-from tcs_hil.signals import NO_LIMIT, Command, ControllerKind, RoadEstimate, TcsState, TorqueLimits
+from tcs_hil.signals import NO_LIMIT, Command, RoadEstimate
 
 DATABASE = load_database()
 PERIOD_NS = 2_000_000
@@ -21,13 +22,10 @@ SIGNALS = VehicleSignals(
 )
 
 
-def command(slip: float = 0.1, fault: int = FaultCode.REAR_SPEED_LATE) -> Command:
-    return Command(
-        limits=TorqueLimits(100.0, NO_LIMIT),
-        active=(True, False),
-        state=TcsState.ACTIVE,
+def decided(slip: float = 0.1, fault: int = FaultCode.REAR_SPEED_LATE) -> Command:
+    return command(
+        *(100.0, NO_LIMIT),
         fault_code=fault,
-        controller=ControllerKind.NMPC,
         slip_ratio=(slip, 0.05),
         slip_reference=0.12,
         road=RoadEstimate((0.3, 0.4), (0.9, 0.8), 0.006),
@@ -46,7 +44,7 @@ class Traffic:
         for _ in range(ticks):
             self.now_ns += PERIOD_NS
             frames = self._vehicle.frames(SIGNALS, self.now_ns)
-            frames += self._service.frames(command(slip), self.now_ns, tick_overruns=3)
+            frames += self._service.frames(decided(slip), self.now_ns, tick_overruns=3)
             for frame_id, data in frames:
                 self.view.feed(frame_id, data, self.now_ns)
         return self.view.snapshot(self.now_ns)

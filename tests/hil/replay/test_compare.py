@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from factories import command
 from msgspec.structs import replace
 
 from tcs_hil.canbus.database import load_database
@@ -11,19 +12,11 @@ from tcs_hil.canbus.tcs_node import TcsNode
 from tcs_hil.hil.replay.compare import DECISIONS, LIMITS, Comparison, Signals, compare
 from tcs_hil.hil.replay.recorded import RecordedTick
 from tcs_hil.hil.replay.story import as_dict, tell
-from tcs_hil.signals import Command, ControllerKind, TcsState, TorqueLimits
+from tcs_hil.signals import Command, TcsState, TorqueLimits
 
 PERIOD_NS = 2_000_000
 DATABASE = load_database()
-GOOD = Command(
-    limits=TorqueLimits(100.0, 120.0),
-    active=(True, True),
-    state=TcsState.ACTIVE,
-    fault_code=0,
-    controller=ControllerKind.PI,
-    slip_ratio=(0.1, 0.1),
-    slip_reference=0.1,
-)
+GOOD = command(100.0, 120.0)
 
 
 def said(*commands: Command) -> list[tuple[Frame, ...]]:

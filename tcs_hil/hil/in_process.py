@@ -13,14 +13,13 @@ from pathlib import Path
 
 import can
 
-from plant_emulator.emulator import PERIOD_NS, Emulator
-from plant_emulator.plant import Plant
+from plant_emulator.emulator import PERIOD_NS
 from plant_emulator.recording import TruthRecorder
 from plant_emulator.scenario import Scenario
 from tcs_hil.canbus.database import load_database
-from tcs_hil.canbus.port import Frame, PortCounters
+from tcs_hil.canbus.frame import Frame, PortCounters
 from tcs_hil.canbus.tcs_node import TcsNode
-from tcs_hil.canbus.vehicle_node import VehicleNode
+from tcs_hil.hil.busless import BuslessCar
 from tcs_hil.runtime.clock import MonotonicClock
 from tcs_hil.runtime.lockstep import LockstepTrigger
 from tcs_hil.runtime.loop import Loop
@@ -33,66 +32,38 @@ from tcs_hil.signals import BusCondition
 FIRST_CHANNEL = 0
 
 
-class _Mouth:
-    """Where the emulator's frames go: to the service's ear, and on record."""
+class _CarPort:
+    """The service's port with the car right behind it.
 
-    def __init__(self, log: Callable[[can.Message], None]) -> None:
-        self._log = log
-        self.now_ns = 0
-        self.said: list[Frame] = []
-
-    def send(self, frame_id: int, data: bytes) -> bool:
-        """Take one frame of the vehicle."""
-        self.record(frame_id, data)
-        self.said.append(Frame(frame_id, data, self.now_ns))
-        return True
-
-    def record(self, frame_id: int, data: bytes) -> None:
-        """Log one frame, whoever sent it."""
-        self._log(
-            can.Message(
-                timestamp=self.now_ns * 1e-9,
-                arbitration_id=frame_id,
-                data=data,
-                is_extended_id=False,
-                channel=FIRST_CHANNEL,
-            )
-        )
-
-
-class _PlantPort:
-    """The service's port with the plant right behind it.
-
-    Waiting for a frame lets the plant speak, answering its tick lets it drive on.
+    Waiting for a frame lets the car speak, answering its tick lets it drive on.
     """
 
-    def __init__(self, emulator: Emulator, mouth: _Mouth) -> None:
+    def __init__(self, car: BuslessCar, log: Callable[[Frame], None]) -> None:
         self.counters = PortCounters()
-        self._emulator = emulator
-        self._mouth = mouth
+        self._car = car
+        self._log = log
         self._tick = 0
+        self._said: list[Frame] = []
 
     def wait(self, _timeout_s: float) -> bool:
-        """Let the plant speak."""
-        self._emulator.publish()
-        self._emulator.send_tick(self._tick)
+        """Let the car speak."""
+        self._said += self._car.speak(self._tick)
         return True
 
     def receive(self) -> list[Frame]:
-        """What the plant has said."""
-        said, self._mouth.said = self._mouth.said, []
+        """What the car has said."""
+        said, self._said = self._said, []
         self.counters.rx += len(said)
         return said
 
     def send(self, frame_id: int, data: bytes) -> bool:
-        """Let the plant hear one frame; the last of a tick lets a period pass."""
+        """Let the car hear one frame; the last of a tick lets a period pass."""
         self.counters.tx += 1
-        self._mouth.record(frame_id, data)
-        self._emulator.hear(frame_id, data, self._mouth.now_ns)
-        if self._emulator.answered(self._tick):
+        self._log(Frame(frame_id, data, self._car.now_ns))
+        self._car.hear(frame_id, data)
+        if self._car.answered(self._tick):
             self._tick += 1
-            self._mouth.now_ns += PERIOD_NS
-            self._emulator.advance_to(self._mouth.now_ns)
+            self._car.drive_on()
         return True
 
     def condition(self) -> BusCondition:
@@ -106,26 +77,34 @@ def drive_in_process(scenario: Scenario, config: ServiceConfig, bus: Path, truth
     Raises:
         TcsError: DBC, predictor or one of the files cannot be used.
     """
-    plant = Plant(scenario)
     recorder = TruthRecorder(truth, scenario)
     with ExitStack() as cleanup:
-        log = cleanup.enter_context(can.Logger(str(bus)))
+        log = _logged(cleanup.enter_context(can.Logger(str(bus))))
         flight = cleanup.enter_context(_flight_recorder(config))
-        loop = _loop(plant, config, recorder, flight, log)
-        loop.run(lambda: plant.finished)
+        car = BuslessCar(scenario, recorder, log)
+        loop = _loop(_CarPort(car, log), config, flight)
+        loop.run(lambda: car.finished)
     recorder.save()
 
 
-def _loop(
-    plant: Plant,
-    config: ServiceConfig,
-    recorder: TruthRecorder,
-    flight: FlightRecorder,
-    log: Callable[[can.Message], None],
-) -> Loop:
+def _logged(write: Callable[[can.Message], None]) -> Callable[[Frame], None]:
+    def log(frame: Frame) -> None:
+        write(
+            can.Message(
+                timestamp=frame.stamp_ns * 1e-9,
+                arbitration_id=frame.frame_id,
+                data=frame.data,
+                is_extended_id=False,
+                channel=FIRST_CHANNEL,
+            )
+        )
+
+    return log
+
+
+def _loop(port: _CarPort, config: ServiceConfig, flight: FlightRecorder) -> Loop:
     database, clock = load_database(), MonotonicClock()
-    node, mouth = TcsNode(database), _Mouth(log)
-    port = _PlantPort(Emulator(plant, VehicleNode(database), mouth, recorder), mouth)
+    node = TcsNode(database)
     tick_id = database.messages["BenchTick"].frame_id
     laws = build_laws(config, clock)
     return Loop(

@@ -10,14 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plant_emulator.emulator import PERIOD_NS, Emulator
-from plant_emulator.plant import Plant
 from plant_emulator.recording import TruthRecorder
 from plant_emulator.scenario import Scenario
 from tcs_hil.canbus.database import load_database
-from tcs_hil.canbus.port import Frame
+from tcs_hil.canbus.frame import Frame
 from tcs_hil.canbus.tcs_node import TcsNode
-from tcs_hil.canbus.vehicle_node import VehicleNode
+from tcs_hil.hil.busless import BuslessCar, nobody
 from tcs_hil.hil.metrics import Truth
 from tcs_hil.runtime.clock import MonotonicClock
 from tcs_hil.service.settings import ServiceConfig
@@ -31,25 +29,6 @@ class Simulation:
 
     truth: Truth
     commands: tuple[Command, ...]
-
-
-class _Mouth:
-    """The emulator's port: what it sends is heard by the service at once."""
-
-    def __init__(self, node: TcsNode, overhear: Callable[[Frame], None]) -> None:
-        self._node = node
-        self._overhear = overhear
-        self.now_ns = 0
-
-    def send(self, frame_id: int, data: bytes) -> bool:
-        """Hand one frame over."""
-        self._node.feed(frame_id, data, self.now_ns)
-        self._overhear(Frame(frame_id, data, self.now_ns))
-        return True
-
-
-def nobody(_frame: Frame) -> None:
-    """Listens to no frame."""
 
 
 def simulate(
@@ -67,19 +46,17 @@ def simulate(
     Raises:
         TcsError: the DBC or the predictor cannot be used.
     """
-    database = load_database()
-    node = TcsNode(database)
-    mouth = _Mouth(node, overhear)
+    node = TcsNode(load_database())
     recorder = TruthRecorder(None, scenario, in_memory=True)
-    emulator = Emulator(Plant(scenario), VehicleNode(database), mouth, recorder)
+    car = BuslessCar(scenario, recorder, overhear)
     pipeline = build_pipeline(config, laws or build_laws(config, MonotonicClock()))
     commands = []
-    while not emulator.plant.finished:
-        emulator.publish()
-        command = pipeline.step(node.measurement(mouth.now_ns))
-        for frame_id, data in node.frames(command, mouth.now_ns):
-            emulator.hear(frame_id, data, mouth.now_ns)
+    while not car.finished:
+        for frame in car.speak():
+            node.feed(*frame)
+        command = pipeline.step(node.measurement(car.now_ns))
+        for frame_id, data in node.frames(command, car.now_ns):
+            car.hear(frame_id, data)
         commands.append(command)
-        mouth.now_ns += PERIOD_NS
-        emulator.advance_to(mouth.now_ns)
+        car.drive_on()
     return Simulation(np.array(recorder.rows), tuple(commands))

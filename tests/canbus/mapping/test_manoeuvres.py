@@ -9,22 +9,20 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from plant_emulator.emulator import PERIOD_NS, Emulator
-from plant_emulator.plant import Plant
 from plant_emulator.recording import TruthRecorder
 from plant_emulator.scenario import load_scenario
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.tcs_node import TcsNode
-from tcs_hil.canbus.vehicle_node import VehicleNode
+from tcs_hil.hil.busless import BuslessCar
 from tcs_hil.hil.metrics import SlipMetrics, slip_metrics
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.clock import MonotonicClock
-from tcs_hil.service.bus_end import bus_end
 from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.service.wiring import build_laws, build_pipeline
 from tcs_hil.signals import Command, InputState, Measurement, TcsState
 
 from .makers import MAKERS, QUENDAL, Maker
+from .mapped import node_of
 from .translator import Frame, Translator
 
 LAUNCH = replace(load_scenario("manoeuvre-1").with_variant("vehicle"), duration_s=1.5)
@@ -71,7 +69,7 @@ class MakersBus:
     """A maker's DBC, with a translator to and from ours."""
 
     def __init__(self, maker: Maker) -> None:
-        self._node = bus_end(maker.config()).node
+        self._node = node_of(maker)
         self._translator = Translator(maker)
 
     def hear(self, frame_id: int, data: bytes, now_ns: int) -> None:
@@ -87,18 +85,6 @@ class MakersBus:
         return [limits for frame in frames if (limits := self._translator.limits(*frame))]
 
 
-class Mouth:
-    """The emulator's port."""
-
-    def __init__(self, road: Road) -> None:
-        self._road = road
-        self.now_ns = 0
-
-    def send(self, frame_id: int, data: bytes) -> bool:
-        self._road.hear(frame_id, data, self.now_ns)
-        return True
-
-
 class Drive(NamedTuple):
     metrics: SlipMetrics
     states: set[TcsState]
@@ -107,17 +93,17 @@ class Drive(NamedTuple):
 def drive(road: Road, config: ServiceConfig) -> Drive:
     """The launch, decided by the configured law on what came over ``road``."""
     pipeline = build_pipeline(config, build_laws(config, MonotonicClock()))
-    mouth, recorder = Mouth(road), TruthRecorder(None, LAUNCH, in_memory=True)
-    emulator = Emulator(Plant(LAUNCH), VehicleNode(load_database()), mouth, recorder)
+    recorder = TruthRecorder(None, LAUNCH, in_memory=True)
+    car = BuslessCar(LAUNCH, recorder)
     states = set()
-    while not emulator.plant.finished:
-        emulator.publish()
-        command = pipeline.step(road.measurement(mouth.now_ns))
+    while not car.finished:
+        for frame in car.speak():
+            road.hear(*frame)
+        command = pipeline.step(road.measurement(car.now_ns))
         states.add(command.state)
-        for frame_id, data in road.answers(command, mouth.now_ns):
-            emulator.hear(frame_id, data, mouth.now_ns)
-        mouth.now_ns += PERIOD_NS
-        emulator.advance_to(mouth.now_ns)
+        for frame_id, data in road.answers(command, car.now_ns):
+            car.hear(frame_id, data)
+        car.drive_on()
     return Drive(slip_metrics(np.array(recorder.rows), 0.1, Vehicle()), states)
 
 

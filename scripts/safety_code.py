@@ -26,6 +26,7 @@ TESTS = (
     "tests/canbus/test_e2e_state.py",
     "tests/canbus/test_golden_bytes.py",
     "tests/canbus/test_nodes.py",
+    "tests/canbus/test_torque_limits.py",
     "tests/canbus/test_watch.py",
     *sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("tests/test_gate*.py")),
     *sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("tests/test_supervisor*.py")),

@@ -15,11 +15,11 @@ import numpy as np
 
 from benchmarks.laws import DEFAULTS, LAWS
 from benchmarks.options import json_option, law_option, write_option
+from benchmarks.random_plants import Sample, Trial, draw, run_campaign, scenario_of, worst
+from benchmarks.random_plants_figure import save_campaign_figure
 from benchmarks.section import markdown, tell
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.control.settings import ControlSettings
-from tcs_hil.hil.campaign import Sample, Trial, draw, run_campaign, scenario_of, worst
-from tcs_hil.hil.campaign_figure import save_campaign_figure
 from tcs_hil.hil.figures import Line, save_slip_figure
 from tcs_hil.hil.simulation import simulate
 

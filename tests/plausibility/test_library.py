@@ -6,9 +6,9 @@ import msgspec
 import pytest
 from plausibility.driving import PERIOD_S, suspects_of
 
+from benchmarks.random_plants import draw, scenario_of
 from plant_emulator.faults import Fault
 from plant_emulator.scenario import Scenario, list_scenarios, load_scenario
-from tcs_hil.hil.campaign import draw, scenario_of
 from tcs_hil.signals import Suspect
 
 TIP_IN = "tip-in-050-kmph"

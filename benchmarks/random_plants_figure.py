@@ -10,7 +10,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tcs_hil.hil.campaign import Sample, Trial
+from benchmarks.random_plants import Sample, Trial
 
 mpl.use("Agg")
 

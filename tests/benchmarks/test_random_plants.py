@@ -3,8 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from tcs_hil.hil.campaign import JUMP_S, Sample, Trial, draw, run_campaign, scenario_of, worst
-from tcs_hil.hil.campaign_figure import save_campaign_figure
+from benchmarks.random_plants import JUMP_S, Sample, Trial, draw, run_campaign, scenario_of, worst
+from benchmarks.random_plants_figure import save_campaign_figure
 from tcs_hil.hil.metrics import LimitCycle, Score, SlipMetrics
 from tcs_hil.hil.simulation import simulate
 from tcs_hil.service.settings import ServiceConfig

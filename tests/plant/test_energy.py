@@ -2,19 +2,10 @@
 
 import numpy as np
 import pytest
-
-from plant_emulator.truth import TRUTH_DTYPE
+from plant.rows import rows
 
 M, R, L, H = 1400.0, 0.318, 2.62, 0.526
 WHEEL_J, MOTOR_J, GEAR = 0.95, 0.03, 3.0
-
-
-def rows(plant, duration_s, dt_s=0.002):
-    recorded = [plant.row]
-    for _ in range(round(duration_s / dt_s)):
-        plant.step(None, dt_s)
-        recorded.append(plant.row)
-    return np.array(recorded).view(TRUTH_DTYPE)[:, 0]
 
 
 @pytest.mark.parametrize("throttle_nm", [100.0, 250.0])

@@ -4,22 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from plant.rows import rows
 
 from plant_emulator import runge_kutta
-from plant_emulator.truth import TRUTH_DTYPE
 from tcs_hil.errors import ConfigError
 from tcs_hil.signals import TorqueLimits
 
 M, G, R, L, H = 1400.0, 9.81, 0.318, 2.62, 0.526
 WHEEL_J, MOTOR_J, GEAR = 0.95, 0.03, 3.0
-
-
-def rows(plant, duration_s, dt_s=0.002):
-    recorded = [plant.row]
-    for _ in range(round(duration_s / dt_s)):
-        plant.step(None, dt_s)
-        recorded.append(plant.row)
-    return np.array(recorded).view(TRUTH_DTYPE)[:, 0]
 
 
 def test_steady_acceleration_is_what_hand_calculation_says(drive):

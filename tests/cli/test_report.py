@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
+from msgspec.structs import replace
 from runtime.fakes import PERIOD_NS, RUN, insight, made_pass
 
 from tcs_hil.canbus.frame import PortCounters

@@ -12,11 +12,18 @@ from tcs_hil.service.settings import ServiceConfig
 
 from .conftest import CHANNEL
 
-SLICE = family_cases(ServiceConfig())[::9]
-"""Both laws in turn; `python -m benchmarks.faults --channel vcan0` drives all."""
+CASES = family_cases(ServiceConfig())
+"""`python -m benchmarks.faults --channel vcan0` drives all; here, some with both laws in turn."""
 
 
-@pytest.mark.parametrize("case", SLICE, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", CASES[::9], ids=lambda case: case.name)
 def test_a_fault_is_answered_as_on_the_embedded_bus(case: Case, tmp_path: Path) -> None:
     result = run_case(case, Bench("lockstep", tmp_path, "socketcan", CHANNEL))
+    assert result.verdict is Verdict.PASSED, result.reason
+
+
+@pytest.mark.simulated_time
+@pytest.mark.parametrize("case", CASES[::27], ids=lambda case: case.name)
+def test_it_is_answered_as_well_at_real_pace(case: Case, tmp_path: Path) -> None:
+    result = run_case(case, Bench("real-time", tmp_path, "socketcan", CHANNEL))
     assert result.verdict is Verdict.PASSED, result.reason

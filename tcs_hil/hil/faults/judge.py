@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from tcs_hil.hil.faults.story import HALF_TICK_S, Story, tell
 from tcs_hil.hil.judging.evidence import Evidence
 from tcs_hil.hil.judging.measured import CannotJudgeError
 from tcs_hil.hil.judging.verdict import Finding, Verdict
+from tcs_hil.hil.run import SERVICE_PHASE_US
 from tcs_hil.supervisor import PERIOD_S
 
 ABOVE = "limit above request"
@@ -28,6 +29,9 @@ MS = 1e3
 
 ROUNDED_NM = RESOLUTION_NM / 2 + 1e-9
 """The bus has steps; the gate, which has none, keeps the request exactly."""
+
+HEARD_S = SERVICE_PHASE_US * 1e-6 + PERIOD_S
+"""At real pace a frame may still be on the wire when the service ticks: the next tick hears it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +47,15 @@ class CellJudge:
         except CannotJudgeError as error:
             return [Finding(limit="recorded", verdict=Verdict.BLOCKED, reason=str(error))]
         story = tell(record, self.cell.promise.state, self.cell.end_s)
-        return [*_always(record, evidence), *_promised(self.cell.promise, story)]
+        promise = _at_real_pace(self.cell.promise) if evidence.clocked else self.cell.promise
+        return [*_always(record, evidence), *_promised(promise, story)]
+
+
+def _at_real_pace(promise: Promise) -> Promise:
+    """The same, with every time counted from when the service can have heard."""
+    owed_s = promise.named_s, promise.within_s
+    named_s, within_s = (None if each is None else each + HEARD_S for each in owed_s)
+    return replace(promise, named_s=named_s, within_s=within_s, back_s=promise.back_s + HEARD_S)
 
 
 def _always(record: Record, evidence: Evidence) -> Iterator[Finding]:

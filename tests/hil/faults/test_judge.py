@@ -33,6 +33,7 @@ class Ended:
     """The part of an `Evidence` that a judge reads besides the record."""
 
     config = ServiceConfig()
+    clocked = False
     end_s = 1.198
 
     class scenario:  # noqa: N801 - stands for an attribute
@@ -71,6 +72,19 @@ def test_a_fault_that_is_answered_in_time_passes_and_is_measured(
     times = [found[name].measured for name in ("time to detect", "time to react", "time back")]
     assert times == [4.0, 20.0, 20.0]
     assert found["named"].reason == "REAR_SPEED_LATE, REAR_SPEED_LOST"
+
+
+def test_at_real_pace_times_count_from_when_the_service_can_have_heard(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    record = answered()
+    record.time_s[:] += 0.0025  # the phase and a period
+    assert failed(findings(record, monkeypatch, CELL)) == {"time to detect", "time to react"}
+    monkeypatch.setattr(Ended, "clocked", True)
+    assert failed(findings(record, monkeypatch, CELL)) == set()
+    assert failed(findings(calm(), monkeypatch)) == set()  # no time is owed, hence none later
+    record.time_s[:] += 0.0025
+    assert failed(findings(record, monkeypatch, CELL)) == {"time to detect", "time to react"}
 
 
 def step_up(record: Record) -> None:

@@ -27,8 +27,8 @@ MODES: tuple[Mode, ...] = ("lockstep", "real-time", "in-process")
 SERVICE_PHASE_US = 500
 """The service ticks this long after the plant: its frames have then arrived."""
 SPARE_S = 30.0
-SLOWEST_LOCKSTEP = 50.0
-"""Times slower than real time that a busy machine may be before a run is given up."""
+SLOWEST_LOCKSTEP = 200.0
+"""Times slower than real time that a busy machine may be; who waits in vain gives up by itself."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ def bank_mpc(settings: ControlSettings, bank: KoopmanBank) -> Controller:
     vehicle = bank.provenance.settings.vehicle
     break_away = BreakAway(settings.slip_reference, vehicle, settings.period_s)
     optimiser = _optimiser(settings, bank)
-    law = CompensatedController(optimiser, integral, break_away, settings.period_s)
+    law = CompensatedController(optimiser, integral, settings.period_s, break_away)
     return GuardedController(law, PiController(settings), bank.validity, settings.period_s)
 
 

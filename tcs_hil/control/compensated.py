@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Protocol
 
 from tcs_hil.control.break_away import BreakAway
+from tcs_hil.control.entry import Entry
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
@@ -45,23 +45,24 @@ class CompensatedController:
 
     ``wheel.loop_delay_s`` says how long that is after the instant of the
     measurement; the prediction model carries the state, e_int with it, through
-    the torques already sent.  From ``entry_slip_ratio`` on the law decides, until
-    it has given all torque back; before, the driver does.
+    the torques already sent.  With an ``entry`` the driver decides until it is
+    passed, and again once the law has given all torque back.  ``break_away``
+    bounds the torque of a law that cannot catch every wheel by itself.
     """
 
     def __init__(
         self,
         optimiser: DelayedOptimiser,
         integral: BoundedIntegral,
-        break_away: BreakAway,
         period_s: float,
-        entry_slip_ratio: float = -math.inf,
+        break_away: BreakAway | None = None,
+        entry: Entry | None = None,
     ) -> None:
         self._optimiser = optimiser
         self._integral = integral
         self._break_away = break_away
         self._period_s = period_s
-        self._entry_slip_ratio = entry_slip_ratio
+        self._entry = entry
         self._awake = False
         self._sent = SentTorques()
 
@@ -75,14 +76,15 @@ class CompensatedController:
         """Forget everything, as at start-up."""
         self._integral.reset()
         self._optimiser.reset()
-        self._break_away.reset()
+        if self._break_away:
+            self._break_away.reset()
         self._sent.reset()
         self._awake = False
 
     def _solve(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
         self._optimiser.observe(wheel, self._weighed_integral_s(wheel.loop_delay_s))
         self._optimiser.roll_forward(*self._sent.pending(wheel.loop_delay_s / self._period_s))
-        ceiling_nm = self._break_away.ceiling_nm(wheel, torque_ref_nm, self._sent.newest_nm)
+        ceiling_nm = self._ceiling_nm(wheel, torque_ref_nm)
         plan = self._optimiser.plan(self._sent.newest_nm, ceiling_nm)
         if plan.status is SolveStatus.FAILED:
             self._optimiser.reset()  # what failed is no warm start
@@ -91,9 +93,14 @@ class CompensatedController:
         self._integral.advance(wheel.slip_ratio, torque_nm, ceiling_nm)
         return Proposal(torque_nm, plan.status, plan.iterations, plan.next_nm)
 
+    def _ceiling_nm(self, wheel: WheelState, torque_ref_nm: float) -> float:
+        if self._break_away is None:
+            return torque_ref_nm
+        return self._break_away.ceiling_nm(wheel, torque_ref_nm, self._sent.newest_nm)
+
     def _entered(self, wheel: WheelState, torque_nm: float, ceiling_nm: float) -> float:
-        """``torque_nm`` from the entry slip on until all is given back, else ``ceiling_nm``."""
-        slips = wheel.slip_ratio > self._entry_slip_ratio
+        """``torque_nm`` from the entry on until all is given back, else ``ceiling_nm``."""
+        slips = self._entry is None or self._entry.passed(wheel)
         self._awake = slips or (self._awake and torque_nm < ceiling_nm - GIVEN_BACK_NM)
         return torque_nm if self._awake else ceiling_nm
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.compensated import CompensatedController
 from tcs_hil.control.driveline_core import FloatArray, driveline_core
+from tcs_hil.control.entry import Entry
 from tcs_hil.control.force_disturbance import ForceDisturbance
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
@@ -85,12 +85,12 @@ def _or_else(value: float, steady: float) -> float:
 
 def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedController:
     """One wheel's default NMPC; the first call may build CasADi's functions."""
+    tuning = settings.default.nmpc
     return CompensatedController(
         DrivelineOptimiser(settings, vehicle),
         BoundedIntegral(
             settings.slip_reference, settings.period_s, settings.default.integral_limit_s
         ),
-        BreakAway(settings.slip_reference, vehicle, settings.period_s),
         settings.period_s,
-        settings.default.nmpc.entry_ratio * settings.slip_reference,
+        entry=Entry(tuning.entry_ratio * settings.slip_reference, tuning.entry_slip_mps),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tcs_hil.control.entry import Entry
 from tcs_hil.control.protocol import Proposal, WheelState
 from tcs_hil.control.screening import clamp, settled
 from tcs_hil.control.settings import ControlSettings
@@ -19,6 +20,8 @@ class PiController:
     def __init__(self, settings: ControlSettings) -> None:
         self._tuning = settings.pi if settings.preset == "paper" else settings.default.pi
         self._slip_reference = settings.slip_reference
+        entry_ratio = self._tuning.entry_ratio * settings.slip_reference
+        self._entry = Entry(entry_ratio, self._tuning.entry_slip_mps)
         self._integral_share = settings.period_s / self._tuning.integral_time_s
         self._integral_nm = 0.0
         self._awake = False
@@ -52,13 +55,8 @@ class PiController:
         return self._tuning.gain_base_nm + self._tuning.gain_slope_nm_per_mps * speed_mps
 
     def _awake_after(self, wheel: WheelState, proportional_nm: float, torque_ref_nm: float) -> bool:
-        near = self._slips(wheel)
+        near = self._entry.passed(wheel)
         if near and not self._awake:
             self._integral_nm = clamp(torque_ref_nm - proportional_nm, torque_ref_nm)
         self._awake = near or (self._awake and self._integral_nm < torque_ref_nm)
         return self._awake
-
-    def _slips(self, wheel: WheelState) -> bool:
-        """Whether the slip is near its reference, as a ratio and in speed."""
-        near = wheel.slip_ratio > self._tuning.entry_ratio * self._slip_reference
-        return near and wheel.slip_speed_mps > self._tuning.entry_slip_mps

@@ -68,13 +68,15 @@ class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_un
         *(2, 2, 2, 2),
     )
     weight_slip: Weight = 1e3
-    weight_integral: Weight = 2e4
-    weight_reduction: PositiveWeight = 1.6e-7
+    weight_integral: Weight = 0.0
+    weight_reduction: PositiveWeight = 5e-6
     weight_change: PositiveWeight = 4e-2  # on (u_k - u_{k-1})²
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 2
     observer_time_s: TimeConstant = 0.02  # of the force disturbance
     entry_ratio: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.3
     """Share of the slip reference at which the law takes over from the driver."""
+    entry_slip_mps: Weight = 0.06
+    """Least slip speed to take over at: near standstill a ratio is made of noise."""
     soft_speed_mps: Speed = 2.5
     """Below it slip answers torque so fast that its weights shrink with the speed squared."""
 

@@ -9,6 +9,15 @@ from tcs_hil.signals import Pair
 STILL_S = 0.25
 """A speed that has not changed for so long is one of its own, not an average of the past."""
 
+STANDS_MPS = 0.03
+"""Front wheels that turn no faster stand; their motors show it to a fraction of this."""
+
+STANDING_S = 0.1
+"""Time constant in which a standing car learns what its accelerometer feels too much."""
+
+FIRST_EDGES_S = 1.0
+"""A car that moves off has met two edges of any rear wheel by then."""
+
 SPEED_GAIN_PER_S = 10.0
 BIAS_GAIN_PER_S2 = 10.0
 """Both poles near 5 per second: slower than the gaps between edges, faster than grade and pitch."""
@@ -23,6 +32,10 @@ class BodySpeed:
     mean over the time between two edges: it is compared with the speed half that
     time ago, once, when it appears on the bus.  The bus does not say how many
     teeth there are; how long a value has stood does.
+
+    A rear wheel shows zero until it has met two edges.  While the front wheels,
+    seen through their motors, stand too, so does the car, and all the
+    accelerometer feels is b; once they turn, a zero says nothing for a while.
     """
 
     def __init__(self, period_s: float) -> None:
@@ -33,21 +46,41 @@ class BodySpeed:
         self._stood_s = [0.0, 0.0]
         self.value_mps = 0.0
 
-    def update(self, rear_mps: Pair, trusted: tuple[bool, bool], accel_mps2: float) -> float:
-        """Speed now, m/s, from the rear wheels' rim speeds and the acceleration felt."""
+    def update(
+        self, rear_mps: Pair, trusted: tuple[bool, bool], accel_mps2: float, driven_mps: float
+    ) -> float:
+        """Speed now, m/s, from the rear wheels' rim speeds and the acceleration felt.
+
+        ``driven_mps`` is the rim speed of the faster front wheel.
+        """
         if not self._known:
             self._take_over(rear_mps, trusted)
+            return self.value_mps
+        if driven_mps < STANDS_MPS and rear_mps == (0.0, 0.0):
+            self._stand(rear_mps, accel_mps2)
             return self.value_mps
         rate_mps2 = accel_mps2 - self._bias_mps2
         self.value_mps = max(self.value_mps + self._period_s * rate_mps2, 0.0)
         for side in range(2):
             self._stood_s[side] += self._period_s
-            still = self._stood_s[side] > STILL_S
-            if trusted[side] and (still or rear_mps[side] != self._seen_mps[side]):
+            starts = self._seen_mps[side] == 0.0 and self._stood_s[side] < FIRST_EDGES_S
+            still = self._stood_s[side] > STILL_S and not starts
+            news = rear_mps[side] != self._seen_mps[side]
+            if starts and news:
+                self._stood_s[side] = 0.0  # a mean over nobody knows how long
+            elif trusted[side] and (still or news):
                 age_s = 0.0 if still else 0.5 * self._stood_s[side]
                 self._correct(side, rear_mps[side] - (self.value_mps - age_s * rate_mps2))
         self._seen_mps = rear_mps
         return self.value_mps
+
+    def _stand(self, rear_mps: Pair, accel_mps2: float) -> None:
+        """Nothing turns: what is felt is the accelerometer's error and the grade."""
+        self.value_mps = 0.0
+        share = self._period_s / STANDING_S
+        self._bias_mps2 += share * (accel_mps2 - self._bias_mps2)
+        self._seen_mps = rear_mps
+        self._stood_s = [0.0, 0.0]
 
     def _take_over(self, rear_mps: Pair, trusted: tuple[bool, bool]) -> None:
         speeds = [speed for speed, good in zip(rear_mps, trusted, strict=True) if good]

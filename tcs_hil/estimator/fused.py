@@ -71,7 +71,15 @@ class FusedEstimator:
         radius_m = self._vehicle.wheel_radius_m
         _, _, left_radps, right_radps = self._wheel_speed_radps
         rear_mps = (left_radps * radius_m, right_radps * radius_m)
-        return self._body.update(rear_mps, m.wheel_speed_valid[2:], accel_mps2)
+        driven_mps = max(abs(speed) for speed in self._driven_radps(m)) * radius_m
+        return self._body.update(rear_mps, m.wheel_speed_valid[2:], accel_mps2, driven_mps)
+
+    def _driven_radps(self, m: Measurement) -> Pair:
+        """The front wheels through their motors, which show the first turn, or by their sensors."""
+        if m.motor_age_s > MOTOR_PATIENCE_S:
+            return self._wheel_speed_radps[:2]
+        left, right = m.motor_speed_radps
+        return left / self._vehicle.gear_ratio, right / self._vehicle.gear_ratio
 
     def _wheel(
         self, side: Side, index: int, m: Measurement, body_mps: float, delay_s: float

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.compensated import CompensatedController
+from tcs_hil.control.entry import Entry
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
@@ -43,10 +44,9 @@ class Scripted:
         self.resets += 1
 
 
-def control(optimiser: Scripted, entry_slip_ratio: float = 0.0) -> CompensatedController:
+def control(optimiser: Scripted, entry: Entry | None = None) -> CompensatedController:
     integral = BoundedIntegral(0.1, 0.002, 0.02)
-    break_away = BreakAway(0.1, Vehicle(), 0.002)
-    return CompensatedController(optimiser, integral, break_away, 0.002, entry_slip_ratio)
+    return CompensatedController(optimiser, integral, 0.002, entry=entry)
 
 
 def test_it_plans_from_the_state_behind_the_torques_under_way() -> None:
@@ -95,7 +95,7 @@ def test_the_integral_reaches_the_next_solve_and_reset_clears_everything() -> No
 
 
 def test_before_the_entry_slip_the_driver_decides_and_after_it_the_law_until_all_is_back() -> None:
-    controller = control(Scripted(80.0, 80.0, 80.0, 200.0, 80.0), entry_slip_ratio=0.03)
+    controller = control(Scripted(80.0, 80.0, 80.0, 200.0, 80.0), Entry(0.03, 0.0))
     slips = [0.02, 0.04, 0.02, 0.02, 0.02]
     torques = [controller.step(wheel_at(5.0, slip), 200.0).torque_nm for slip in slips]
     assert torques == [200.0, 80.0, 80.0, 200.0, 200.0]
@@ -109,3 +109,18 @@ def test_a_long_delay_takes_weight_off_the_integral() -> None:
     _, short, long = optimiser.integrals
     assert short == 0.002 * (0.1 - SPINNING.slip_ratio)
     assert long == 0.25 * 2.0 * short
+
+
+def test_a_slip_ratio_made_of_a_slow_wheels_noise_is_no_entry() -> None:
+    controller = control(Scripted(80.0, 80.0), Entry(0.03, 0.06))
+    assert controller.step(wheel_at(0.3, 0.1), 200.0).torque_nm == 200.0
+    assert controller.step(wheel_at(1.0, 0.1), 200.0).torque_nm == 80.0
+
+
+def test_a_wheel_that_breaks_away_is_planned_for_under_its_ceiling() -> None:
+    optimiser = Scripted(80.0, 200.0)
+    integral, break_away = BoundedIntegral(0.1, 0.002, 0.02), BreakAway(0.1, Vehicle(), 0.002)
+    controller = CompensatedController(optimiser, integral, 0.002, break_away)
+    controller.step(wheel_at(2.0, 0.05), 200.0)
+    controller.step(wheel_at(2.0, 0.4), 200.0)
+    assert optimiser.asked[1][2] == 0.7 * 80.0

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from plant_emulator.bounds import TEETH_MAX, Finite, NonNegative, Positive, Ratio, Table
+from tcs_hil.errors import offer
 
 Kind = Literal[
     "off",
@@ -98,9 +99,13 @@ class Fault(Table, frozen=True):
     def __post_init__(self) -> None:
         """Refuse an unknown target, a kind it cannot have and a fault that never is."""
         if self.target not in _KINDS_OF:
-            raise ValueError(f"`target` {self.target!r} is no signal, message, motor or node")
-        if self.kind not in _KINDS_OF[self.target]:
-            raise ValueError(f"`kind` {self.kind!r} does not exist for `target` {self.target!r}")
+            hint = offer(self.target, _KINDS_OF)
+            raise ValueError(f"`target` {self.target!r} is no signal, message, motor or node{hint}")
+        if self.kind not in (kinds := _KINDS_OF[self.target]):
+            raise ValueError(
+                f"`kind` {self.kind!r} does not exist for `target` {self.target!r}, "
+                f"which takes {', '.join(sorted(kinds))}"
+            )
         if self.end <= self.start_s:
             raise ValueError("`end_s` must be greater than `start_s`")
         if self.low > self.high:

@@ -26,7 +26,7 @@ from plant_emulator.tir import read_tir
 from plant_emulator.tyre import Tyre
 from plant_emulator.whole_car import WholeCar
 from tcs_hil.config import read_toml
-from tcs_hil.errors import ConfigError
+from tcs_hil.errors import ConfigError, offer
 
 MOST_DOUBLINGS = 4
 """Each doubles what those before it leave."""
@@ -117,14 +117,14 @@ class Listing(msgspec.Struct, frozen=True):
     description: str
 
 
-def load_scenario(name_or_path: str | Path) -> Scenario:
-    """Read a shipped scenario by name, or any file by its path.
+def load_scenario(name_or_path: str | Path, folder: Path = Path()) -> Scenario:
+    """Read a shipped scenario by name, or any file by its path, relative to ``folder``.
 
     Raises:
         ConfigError: there is no such scenario or file, it is not TOML, or a key
             is unknown or out of bounds; file and key are named.
     """
-    path = _find(name_or_path)
+    path = _find(name_or_path, folder)
     scenario = read_toml(path, Scenario)
     if scenario.vehicle.tyre_file is not None:
         tyre = read_tir(path.parent / scenario.vehicle.tyre_file)
@@ -148,12 +148,13 @@ def list_scenarios() -> list[Listing]:
     ]
 
 
-def _find(name_or_path: str | Path) -> Path:
+def _find(name_or_path: str | Path, folder: Path) -> Path:
     path = Path(name_or_path)
     if path.suffix == ".toml" or len(path.parts) > 1:
-        return path
-    for shipped in LIBRARY.glob("*/*.toml"):
-        if shipped.stem == str(name_or_path):
-            return shipped
-    name = str(name_or_path)[:100]
-    raise ConfigError(f"scenario {name!r} is neither a file nor one that is shipped")
+        return folder / path
+    shipped = {path.stem: path for path in LIBRARY.glob("*/*.toml")}
+    if path.name not in shipped:
+        name = path.name[:100]
+        hint = offer(name, shipped) or "; `plant-emulator list` names those"
+        raise ConfigError(f"scenario {name!r} is neither a file nor one that is shipped{hint}")
+    return shipped[path.name]

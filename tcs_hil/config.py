@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import TypeVar
 
 import msgspec
+from msgspec import inspect
 
-from tcs_hil.errors import ConfigError
+from tcs_hil.errors import ConfigError, offer
 
 T = TypeVar("T")
+
+WORDS = {
+    "Object contains unknown field": "unknown key",
+    "Object missing required field": "missing key",
+    "Invalid enum value": "unknown value",
+    " | null": "",  # TOML has none
+}
+"""msgspec's, and those of this project."""
+UNKNOWN = re.compile(r"unknown (?:key|value) .(.*).")
+STEP = re.compile(r"\w+|\.{3}")  # `map.messages[...].counter`, `fault[0].kind`
 
 
 def read_toml(path: Path, struct: type[T]) -> T:
@@ -43,15 +55,34 @@ def convert(table: object, struct: type[T], source: str) -> T:
         return msgspec.convert(table, struct)
     except (msgspec.ValidationError, UnicodeDecodeError) as error:
         # msgspec may cut a name it quotes within a character: UnicodeDecodeError.
-        raise ConfigError(f"{source}: {_one_sentence(str(error))}") from error
+        raise ConfigError(f"{source}: {_one_sentence(str(error), struct)}") from error
     except RecursionError as error:
         raise ConfigError(f"{source}: nested too deeply") from error
 
 
-def _one_sentence(message: str) -> str:
-    """``Object contains unknown field `x` - at `$.bus``` becomes ``bus: unknown key `x```."""
+def _one_sentence(message: str, struct: type) -> str:
+    """``Object contains unknown field `x` - at `$.bus``` becomes ``bus: unknown key `x```.
+
+    A name that is unknown is followed by those that are known.
+    """
     what, _, where = message.partition(" - at `$")
-    what = what.replace("Object contains unknown field", "unknown key")
-    what = what.replace("Object missing required field", "missing key")
     key = where.strip("`").lstrip(".")
+    for theirs, ours in WORDS.items():
+        what = what.replace(theirs, ours)
+    if name := UNKNOWN.fullmatch(what):
+        what += offer(name[1], _known(inspect.type_info(struct), STEP.findall(key)))
     return f"{key}: {what}" if key else what
+
+
+def _known(kind: inspect.Type, way: list[str]) -> list[str]:
+    """Keys of the table, or values of the choice, that lies the ``way`` of keys down."""
+    if isinstance(kind, inspect.UnionType):  # of one such thing and null
+        return max((_known(each, way) for each in kind.types), key=len)
+    if isinstance(kind, inspect.StructType):
+        fields = {field.encode_name: field.type for field in kind.fields}
+        return _known(fields[way[0]], way[1:]) if way else list(fields)
+    if isinstance(kind, inspect.DictType) and way:
+        return _known(kind.value_type, way[1:])
+    if isinstance(kind, inspect.VarTupleType) and way:
+        return _known(kind.item_type, way[1:])
+    return [str(value) for value in kind.values] if isinstance(kind, inspect.LiteralType) else []

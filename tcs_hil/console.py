@@ -12,6 +12,11 @@ USER_ERROR = 2
 INTERRUPTED = 130
 
 
+def counted(count: int, what: str) -> str:
+    """``1 case``, ``2 cases``."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def run(command: click.Command, program: str) -> int:
     """Run a click command line and return its exit status.
 

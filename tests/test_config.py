@@ -1,8 +1,10 @@
 from pathlib import Path
+from typing import Literal
 
+import msgspec
 import pytest
 
-from tcs_hil.config import read_toml
+from tcs_hil.config import convert, read_toml
 from tcs_hil.errors import ConfigError
 from tcs_hil.safety_settings import GateSettings
 
@@ -38,6 +40,36 @@ def test_a_bad_file_is_refused_with_file_and_key_named(
         read_toml(path, GateSettings)
     assert str(path) in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+class Choice(msgspec.Struct, forbid_unknown_fields=True):
+    colour: Literal["red", "green"] = "red"
+
+
+class Nested(msgspec.Struct, forbid_unknown_fields=True):
+    choice: Choice | None = None
+    choices: tuple[Choice, ...] = ()
+    named: dict[str, Choice] = {}
+
+
+@pytest.mark.parametrize(
+    ("table", "sentence"),
+    [
+        ({"chioce": 1}, "unknown key `chioce`; did you mean choice or choices?"),
+        ({"choice": {"x": 1}}, "choice: unknown key `x`; there are colour"),
+        ({"choice": {"colour": "gren"}}, "unknown value 'gren'; did you mean green?"),
+        ({"choices": [{}, {"colour": "x"}]}, "choices[1].colour: unknown value 'x'; there are"),
+        (
+            {"named": {"mine": {"colou": 1}}},
+            "named[...]: unknown key `colou`; did you mean colour?",
+        ),
+        ({"choice": 1}, "choice: Expected `object`, got `int`"),
+    ],
+)
+def test_an_unknown_name_is_refused_with_what_may_be_meant(table: object, sentence: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        convert(table, Nested, "mine.toml")
+    assert sentence in str(refused.value)
 
 
 def test_a_name_no_file_can_have_is_refused(tmp_path: Path) -> None:

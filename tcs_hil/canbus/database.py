@@ -89,8 +89,10 @@ def _read(source: str, path: Path | None) -> str:
     origin = path if path is not None else importlib.resources.files(__package__) / "tcs.dbc"
     try:
         return origin.read_text(encoding=DBC_ENCODING)
-    except (OSError, UnicodeDecodeError) as error:
-        raise DatabaseError(f"{source} cannot be read: {error}") from error
+    except OSError as error:
+        raise DatabaseError(f"{source}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise DatabaseError(f"{source}: cannot be read ({error})") from error
 
 
 def _parse(source: str, text: str) -> CanDatabase:

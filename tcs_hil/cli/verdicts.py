@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from tcs_hil.console import counted
 from tcs_hil.hil.judging.verdict import Verdict
 from tcs_hil.hil.suite.result import Result, SuiteResult
 
@@ -47,4 +48,4 @@ def _figure(value: float | None) -> str:
 
 def _sum(suite: SuiteResult) -> str:
     counts = (f"{suite.count(verdict)} {verdict}" for verdict in Verdict)
-    return f"{len(suite.results)} cases: {', '.join(counts)}; {suite.wall_s:.0f} s"
+    return f"{counted(len(suite.results), 'case')}: {', '.join(counts)}; {suite.wall_s:.0f} s"

@@ -47,7 +47,7 @@ def test_the_screen_says_what_failed_where_and_for_how_long(hil) -> None:
     output = hil(LOOSE + STRICT).output
     assert "failed" in output
     assert "truth.request_nm < 100 Nm: 250 Nm at 0.250 s (first at" in output
-    assert "1 cases: 0 passed, 1 failed, 0 blocked" in output
+    assert "1 case: 0 passed, 1 failed, 0 blocked" in output
 
 
 def test_with_json_a_program_reads_the_same(hil) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from typing import Literal
@@ -14,7 +13,7 @@ from cantools.database.can import Message, Signal
 
 from plant_emulator.truth import TRUTH_DTYPE
 from tcs_hil.canbus.database import parse_dbc
-from tcs_hil.errors import ConfigError
+from tcs_hil.errors import ConfigError, offer
 from tcs_hil.hil.export.telemetry import ENUMERATIONS
 from tcs_hil.names import NO_UNIT, column_names, unit_of
 from tcs_hil.runtime.record import FIELDS
@@ -30,6 +29,7 @@ STAGES = {
 }
 """Times of a tick between two of its stamps."""
 LATENCY = "latency_us"
+LISTED = "; docs/hil.md says which there are, `tcs-hil signals` those of the bus"
 CLOCKED = {
     *STAGES,
     LATENCY,
@@ -78,7 +78,8 @@ class Namespace:
             return self._by_full[candidates[0]]
         if candidates:
             raise ConfigError(f"signal {name!r} may be {' or '.join(candidates)}")
-        raise unknown("signal", name, [*self._by_full, *self._by_short])
+        names = [*self._by_full, *self._by_short]
+        raise ConfigError(f"there is no signal {name!r}{offer(name, names) or LISTED}")
 
 
 def number(value: float | str, labels: Mapping[str, float], what: str) -> float:
@@ -93,14 +94,6 @@ def number(value: float | str, labels: Mapping[str, float], what: str) -> float:
         known = f"is one of {', '.join(labels)}" if labels else "is a number"
         raise ConfigError(f"{what} {known}, not {value!r}")
     return labels[value]
-
-
-def unknown(what: str, name: str, known: list[str]) -> ConfigError:
-    """An error that offers what may have been meant."""
-    by_lower = {each.lower(): each for each in known}
-    near = [by_lower[each] for each in get_close_matches(name.lower(), by_lower, n=3)]
-    hint = f"; did you mean {' or '.join(near)}?" if near else ""
-    return ConfigError(f"there is no {what} {name!r}{hint}")
 
 
 @lru_cache(maxsize=4)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Set
+from difflib import get_close_matches
 
 from plant_emulator.expect import Expect
-from tcs_hil.errors import ConfigError
-from tcs_hil.hil.judging.channels import Channel, Namespace, namespace, number, unknown
+from tcs_hil.errors import ConfigError, offer
+from tcs_hil.hil.judging.channels import Channel, Namespace, namespace, number
 from tcs_hil.hil.judging.evidence import Evidence, Series
 from tcs_hil.hil.judging.limits import Check, Quantity, worst_sample
 from tcs_hil.hil.judging.measured import CannotJudgeError, Measured
@@ -50,7 +51,10 @@ def _run_metric(expect: Expect, names: Namespace) -> Quantity:
     if name in SIGNAL_METRICS:
         raise ConfigError(f"metric {name!r} is of a signal: name the `signal`, too")
     if name not in RUN_METRICS:
-        raise unknown("metric", name, [*RUN_METRICS, *SIGNAL_METRICS, *map(str, names)])
+        known = [*RUN_METRICS, *SIGNAL_METRICS]
+        # A signal may have been taken for a metric; without a likeness the metrics are offered.
+        near = get_close_matches(name, map(str, names), n=1)
+        raise ConfigError(f"there is no metric {name!r}{offer(name, known + near)}")
     metric = RUN_METRICS[name]
     _refuse(expect, ("target", "band"))
     if metric.whole and (expect.from_s > 0.0 or expect.to_s is not None):
@@ -83,7 +87,7 @@ def _found(name: str) -> SignalMetric:
     if name in RUN_METRICS:
         raise ConfigError(f"metric {name!r} is of the whole run: leave out `signal`")
     if name not in SIGNAL_METRICS:
-        raise unknown("metric of a signal", name, list(SIGNAL_METRICS))
+        raise ConfigError(f"there is no metric of a signal {name!r}{offer(name, SIGNAL_METRICS)}")
     return SIGNAL_METRICS[name]
 
 

@@ -8,7 +8,7 @@ import msgspec
 
 from plant_emulator.scenario import Scenario
 from tcs_hil.config import convert
-from tcs_hil.errors import ConfigError, TcsError
+from tcs_hil.errors import ConfigError, TcsError, offer
 from tcs_hil.hil.batch import Job, judge
 from tcs_hil.hil.metrics import Score
 from tcs_hil.hil.study.design import Point
@@ -99,15 +99,16 @@ def _plain(struct: msgspec.Struct) -> Any:
 def _put(table: Any, path: str, value: Value, key: str) -> None:
     """Set ``path``, names and places in lists joined by dots, in plain tables."""
     *way, last = path.split(".")
-    try:
-        for name in way:
-            table = table[_place(table, name)]
-        place = _place(table, last)
-        table[place]  # a key that is not there is not made
-    except (KeyError, IndexError, TypeError, ValueError) as error:
-        raise ConfigError(f"there is no `{key}` to vary") from error
-    table[place] = value
+    for name in way:
+        table = table[_place(table, name, key)]
+    table[_place(table, last, key)] = value
 
 
-def _place(table: Any, name: str) -> int | str:
-    return int(name) if isinstance(table, list) else name
+def _place(table: Any, name: str, key: str) -> int | str:
+    """Where ``name`` is in a table; one that is not there is not made."""
+    if isinstance(table, list) and name.isdecimal() and int(name) < len(table):
+        return int(name)
+    if isinstance(table, dict) and name in table:
+        return name
+    hint = offer(name, table) if isinstance(table, dict) else ""
+    raise ConfigError(f"there is no `{key}` to vary{hint}")

@@ -88,11 +88,11 @@ def check_cases(cases: Sequence[Case]) -> None:
             name; the scenario is named.
     """
     for case in cases:
-        for number, expect in enumerate(case.scenario.expect, 1):
+        for place, expect in enumerate(case.scenario.expect):  # counted as in every TOML error
             try:
                 prepare(expect, case.config.bus.database)
             except ConfigError as error:
-                raise ConfigError(f"{case.scenario_name}: expect {number}: {error}") from error
+                raise ConfigError(f"{case.scenario_name}: expect[{place}]: {error}") from error
     twice = _first_twice(case.name for case in cases)
     if twice is not None:
         raise ConfigError(f"two cases are called {twice}: name one of the scenarios differently")

@@ -8,7 +8,7 @@ from pathlib import Path
 from msgspec import structs
 
 from plant_emulator.scenario import list_scenarios, load_scenario
-from tcs_hil.errors import ConfigError
+from tcs_hil.errors import ConfigError, offer
 from tcs_hil.hil.faults.suite import FAMILIES, SUITE, family_cases, fault_cases
 from tcs_hil.hil.suite.case import Case
 from tcs_hil.service.settings import ServiceConfig
@@ -39,7 +39,7 @@ def suite_cases(name: str, config: ServiceConfig) -> list[Case]:
         return GENERATED[name](config)
     listings = [listing for listing in list_scenarios() if name in (ALL, listing.suite)]
     if not listings:
-        raise ConfigError(f"there is no suite {name!r}; there are {', '.join(suite_names())}")
+        raise ConfigError(f"there is no suite {name!r}{offer(name, suite_names())}")
     return [_case(listing.suite, listing.name, listing.name, config) for listing in listings]
 
 

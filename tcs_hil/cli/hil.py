@@ -13,7 +13,6 @@ import msgspec
 from tcs_hil.cli.options import bus_options, json_option
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.cli.verdicts import show
-from tcs_hil.config import read_toml
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.judging.verdict import Verdict
 from tcs_hil.hil.processes import interrupted_by_sigterm
@@ -25,7 +24,7 @@ from tcs_hil.hil.suite.library import scenario_case, suite_cases
 from tcs_hil.hil.suite.provenance import sum_up
 from tcs_hil.hil.suite.result import SuiteResult, load_results
 from tcs_hil.hil.suite.runner import Bench, run_cases
-from tcs_hil.service.settings import ControllerName, ServiceConfig
+from tcs_hil.service.settings import ControllerName, ServiceConfig, read_service
 
 EXIT_STATUS = {Verdict.PASSED: 0, Verdict.FAILED: 1, Verdict.BLOCKED: 3}
 CONTROLLERS: tuple[ControllerName, ...] = get_args(ControllerName)
@@ -118,7 +117,7 @@ def command(scenarios: tuple[str, ...], **options: Any) -> None:
 
 def _cases(scenarios: tuple[str, ...], options: dict[str, Any]) -> list[Case]:
     path = options["config_path"]
-    config = ServiceConfig() if path is None else read_toml(path, ServiceConfig)
+    config = ServiceConfig() if path is None else read_service(path)
     cases = [case for name in options["suites"] for case in suite_cases(name, config)]
     cases += [scenario_case(name, config) for name in scenarios]
     if not cases:

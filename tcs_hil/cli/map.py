@@ -13,9 +13,8 @@ from tcs_hil.canbus.mapping.findings import Finding, Weight
 from tcs_hil.canbus.mapping.plan import KINDS, MappedInput, MappedMessage, Plan, RangeRule, Rule
 from tcs_hil.canbus.mapping.propose import propose
 from tcs_hil.cli.options import json_option
-from tcs_hil.config import read_toml
 from tcs_hil.service.bus_end import examine_map
-from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.settings import read_service
 
 STYLES: dict[Weight, dict[str, Any]] = {
     Weight.NOTE: {"dim": True},
@@ -45,7 +44,7 @@ def check(context: click.Context, config_path: Path, as_json: bool) -> None:
 
     Example: tcs-hil map check mycar.toml
     """
-    plan, findings = examine_map(read_toml(config_path, ServiceConfig))
+    plan, findings = examine_map(read_service(config_path))
     runs = not findings.errors
     if as_json:
         click.echo(json.dumps(_as_dict(plan, findings.found, runs), indent=2))
@@ -62,7 +61,9 @@ def init(dbc_path: Path) -> None:
 
     Example: tcs-hil map init mycar.dbc > mycar.toml
     """
-    click.echo(propose(parse_dbc(dbc_path)[1], str(dbc_path)), nl=False)
+    # Nobody knows where the output goes: a bare name alone is meant to stay beside it.
+    named = dbc_path if dbc_path.parent == Path() else dbc_path.absolute()
+    click.echo(propose(parse_dbc(dbc_path)[1], str(named)), nl=False)
 
 
 def _as_dict(plan: Plan, found: list[Finding], runs: bool) -> dict[str, Any]:

@@ -11,7 +11,6 @@ from msgspec.structs import replace
 
 from tcs_hil.cli.options import bus_options, json_option
 from tcs_hil.cli.progress import progress_bar
-from tcs_hil.config import read_toml
 from tcs_hil.hil.logs.sources import find_sources
 from tcs_hil.hil.replay.session import (
     Verdict,
@@ -20,7 +19,7 @@ from tcs_hil.hil.replay.session import (
     replay_live,
 )
 from tcs_hil.hil.replay.story import as_dict, tell
-from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.settings import ServiceConfig, read_service
 
 DIFFERENT = 1
 """Exit status where the service no longer says what it said."""
@@ -59,7 +58,7 @@ def command(
     """
     sources = find_sources(run)
     path = options.pop("config_path")
-    config = recorded_config(sources) if path is None else read_toml(path, ServiceConfig)
+    config = recorded_config(sources) if path is None else read_service(path)
     if live:  # the run may have been recorded on another kind of bus
         config = replace(config, bus=replace(config.bus, interface="auto"))
     with progress_bar("replaying") as advance:

@@ -11,9 +11,9 @@ from msgspec.structs import replace
 
 from tcs_hil.cli.options import bus_options, json_option
 from tcs_hil.cli.summary import show_summary
-from tcs_hil.config import convert, read_toml
+from tcs_hil.config import convert
 from tcs_hil.service.daemon import serve
-from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.settings import ServiceConfig, read_service
 
 
 @click.command()
@@ -54,7 +54,7 @@ def command(config_path: Path | None, as_json: bool, **options: Any) -> None:
 
     Example: tcs-hil run --controller nmpc --channel vcan0 --flight-recording run.tcsrec
     """
-    config = ServiceConfig() if config_path is None else read_toml(config_path, ServiceConfig)
+    config = ServiceConfig() if config_path is None else read_service(config_path)
     show_summary(serve(_with_options(config, options), _say), as_json)
 
 

@@ -115,7 +115,8 @@ def _as_run(plan: RunPlan, files: RunFiles) -> ServiceConfig:
         tick = replace(config.tick, trigger="timer", phase_us=SERVICE_PHASE_US)
     ticks = round(recorded_s / config.control.period_s) + 1
     recorder = replace(config.recorder, path=str(files.flight.absolute()), ticks=ticks)
-    return replace(config, tick=tick, recorder=recorder)
+    # Written down elsewhere than where it was read: its paths must not move with it.
+    return replace(config, tick=tick, recorder=recorder).beside(Path.cwd())
 
 
 def _drive_processes(plan: RunPlan, files: RunFiles, config: ServiceConfig) -> None:

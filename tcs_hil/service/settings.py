@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta
+from msgspec.structs import replace
 
 from tcs_hil.canbus.mapping.settings import SignalMap
+from tcs_hil.config import read_toml
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.realtime import FIFO_PRIORITY
@@ -67,7 +70,29 @@ class ServiceConfig(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     gate: GateSettings = GateSettings()
     map: SignalMap | None = None
 
+    def beside(self, folder: Path) -> ServiceConfig:
+        """The same configuration with its paths absolute, relative ones taken from ``folder``."""
+
+        def absolute(path: str | None) -> str | None:
+            return None if path is None else str((folder / path).absolute())
+
+        return replace(
+            self,
+            model=absolute(self.model),
+            bus=replace(self.bus, database=absolute(self.bus.database)),
+            recorder=replace(self.recorder, path=absolute(self.recorder.path)),
+        )
+
     @property
     def kind(self) -> ControllerKind:
         """The control law as it is named on the bus."""
         return ControllerKind[self.controller.upper()]
+
+
+def read_service(path: Path) -> ServiceConfig:
+    """Read a configuration file; a relative path in it is relative to the file.
+
+    Raises:
+        ConfigError: the file is missing, or something in it does not fit; both are named.
+    """
+    return read_toml(path, ServiceConfig).beside(path.parent)

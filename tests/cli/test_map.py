@@ -23,9 +23,9 @@ def broken(tmp_path: Path) -> Path:
     text = (FOLDER / "montane.toml").read_text()
     path = tmp_path / "broken.toml"
     path.write_text(
-        text.replace("WhlSpd_Frnt.WhlSpd_FL", "WhlSpd_Frnt.WhlSpeed_FL").replace(
-            "[map.messages.VCU_Demand]", "[map.messages.VCU_Demand]\ncycle_ms = 50"
-        )
+        text.replace("montane.dbc", str((FOLDER / "montane.dbc").absolute()))
+        .replace("WhlSpd_Frnt.WhlSpd_FL", "WhlSpd_Frnt.WhlSpeed_FL")
+        .replace("[map.messages.VCU_Demand]", "[map.messages.VCU_Demand]\ncycle_ms = 50")
     )
     return path
 
@@ -68,3 +68,18 @@ def test_a_program_reads_the_same_as_json(broken: Path) -> None:
     assert speed["signal"] == "ABS_WhlSpd_Frnt.WhlSpd_FL"
     assert speed["believed"] == "while WhlSpd_FL_Stat is 0"
     assert speed["cycle"] == "2 ms"
+
+
+@pytest.mark.parametrize("given", ["aurelis.dbc", "cars/aurelis.dbc"])
+def test_a_proposal_is_good_beside_the_dbc_or_anywhere(
+    given: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = (FOLDER / "aurelis.dbc").read_bytes()
+    monkeypatch.chdir(tmp_path)
+    Path(given).parent.mkdir(exist_ok=True)
+    Path(given).write_bytes(content)
+    proposal = CliRunner().invoke(command, ["init", given]).stdout
+    beside = Path(given).with_suffix(".toml")
+    beside.write_text(proposal)
+    monkeypatch.chdir("/")
+    assert check(tmp_path / beside).exit_code == 0

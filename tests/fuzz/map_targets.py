@@ -17,13 +17,13 @@ from tcs_hil.canbus.mapping.resolve import resolve
 from tcs_hil.canbus.mapping.settings import SignalMap
 from tcs_hil.config import read_toml
 from tcs_hil.service.bus_end import examine_map
-from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.settings import ServiceConfig, read_service
 
 from .file_targets import through_file
 from .frame_targets import LATER_NS, STEP
 
 CARS = {path.stem: path for path in sorted(Path("tests/data/dbc").glob("*.toml"))}
-CONFIGS = {name: read_toml(path, ServiceConfig) for name, path in CARS.items()}
+CONFIGS = {name: read_service(path) for name, path in CARS.items()}
 DBCS = [parse_dbc(path.with_suffix(".dbc"))[1] for path in CARS.values()]
 PLANS: list[Plan] = [examine_map(config)[0] for config in CONFIGS.values()]
 NODES = [MappedNode(plan) for plan in PLANS]

@@ -10,13 +10,12 @@ import pytest
 from msgspec import structs
 
 from plant_emulator.scenario import load_scenario
-from tcs_hil.config import read_toml
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.metrics import slip_metrics
 from tcs_hil.hil.processes import ProcessError
 from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.service.settings import BusSettings, ControllerName, ServiceConfig
+from tcs_hil.service.settings import BusSettings, ControllerName, ServiceConfig, read_service
 from tcs_hil.signals import TcsState
 
 SHORT = """
@@ -119,8 +118,17 @@ def test_what_was_run_can_be_read_back(plan) -> None:
     planned = plan("pi", "in-process")
     files = execute(planned)
     assert load_scenario(files.scenario) == planned.scenario
-    config = read_toml(files.config, ServiceConfig)
+    config = read_service(files.config)
     assert (config.controller, config.control) == ("pi", planned.config.control)
+
+
+def test_the_paths_of_what_was_run_hold_in_the_folder_of_the_run(plan, monkeypatch) -> None:
+    dbc = Path("tcs_hil/canbus/tcs.dbc").absolute()
+    monkeypatch.chdir(dbc.parent)
+    planned = plan("pi", "in-process")
+    bus = structs.replace(planned.config.bus, database="tcs.dbc")
+    files = execute(replace(planned, config=structs.replace(planned.config, bus=bus)))
+    assert read_service(files.config).bus.database == str(dbc)
 
 
 def frames(path: Path) -> list[tuple[int, bytes]]:

@@ -10,7 +10,6 @@ from typing import NamedTuple
 from plant_emulator.undisturbed import undisturbed
 from tcs_hil.canbus.database import Database, load_database
 from tcs_hil.canbus.port import open_port
-from tcs_hil.config import read_toml
 from tcs_hil.hil.logs.sources import Sources
 from tcs_hil.hil.replay.compare import DECISIONS, LIMITS, Comparison, compare
 from tcs_hil.hil.replay.in_process import replay
@@ -18,7 +17,7 @@ from tcs_hil.hil.replay.live import replay_in_lockstep, replay_in_real_time
 from tcs_hil.hil.replay.load import load
 from tcs_hil.hil.replay.recorded import Grid, RecordedTick
 from tcs_hil.runtime.clock import MonotonicClock
-from tcs_hil.service.settings import BusSettings, ServiceConfig
+from tcs_hil.service.settings import BusSettings, ServiceConfig, read_service
 
 NS_PER_S = 1_000_000_000
 SEND_TIMEOUT_S = 1.0
@@ -40,7 +39,7 @@ def recorded_config(sources: Sources) -> ServiceConfig:
     Raises:
         ConfigError: it cannot be read.
     """
-    return ServiceConfig() if sources.config is None else read_toml(sources.config, ServiceConfig)
+    return ServiceConfig() if sources.config is None else read_service(sources.config)
 
 
 def replay_in_process(sources: Sources, config: ServiceConfig, tolerance_nm: float) -> Verdict:

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta
+from msgspec.structs import replace
 
 from plant_emulator.scenario import Scenario, Variant, load_scenario
 from tcs_hil.config import read_toml
@@ -52,7 +53,9 @@ class Success(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Everything about a study; ``scenario`` is a shipped one or a file beside the study's.
+    """Everything about a study; ``scenario`` is a shipped one or a file.
+
+    Paths in it are relative to the study's file.
 
     ``vehicle`` drives it with this car instead of its own.
     """
@@ -92,8 +95,8 @@ def read_plan(path: Path) -> Plan:
         ConfigError: a file is missing or wrong; file and key are named.
     """
     study = read_toml(path, Study)
-    beside = path.parent / study.scenario
-    scenario = load_scenario(beside if beside.is_file() else study.scenario)
+    study = replace(study, service=study.service.beside(path.parent))
+    scenario = load_scenario(study.scenario, path.parent)
     if study.vehicle is not None:
         scenario = scenario.with_variant(study.vehicle)
     return Plan(study, scenario.resolved())

@@ -14,8 +14,7 @@ from pathlib import Path
 
 import cantools
 
-from tcs_hil.config import read_toml
-from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.settings import ServiceConfig, read_service
 from tcs_hil.signals import Measurement, TorqueLimits
 
 FOLDER = Path("tests/data/dbc")
@@ -53,7 +52,7 @@ class Maker:
         return FOLDER / f"{self.name}.toml"
 
     def config(self) -> ServiceConfig:
-        return read_toml(self.toml, ServiceConfig)
+        return read_service(self.toml)
 
     def dbc(self) -> cantools.database.Database:
         return _dbc(self.name)

@@ -28,7 +28,7 @@ def config_with(maker: Maker, **changes: Any) -> ServiceConfig:
             del place[last]
         else:
             place[last] = value
-    return convert(table, ServiceConfig, "test")
+    return convert(table, ServiceConfig, "test").beside(maker.toml.parent)
 
 
 def found(maker: Maker, **changes: Any) -> list[Finding]:

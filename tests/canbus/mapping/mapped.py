@@ -17,6 +17,6 @@ def node_of(maker: Maker, **tables: Any) -> MappedNode:
     """The node that speaks with the maker's car; ``tables`` replace parts of the map."""
     config = tomllib.loads(maker.toml.read_text())
     config["map"] |= tables
-    node = bus_end(convert(config, ServiceConfig, "test")).node
+    node = bus_end(convert(config, ServiceConfig, "test").beside(maker.toml.parent)).node
     assert isinstance(node, MappedNode)
     return node

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 import click
 
+from tcs_hil.errors import ConfigError
+
+BUS_OPTIONS = ("interface", "channel", "bitrate")
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -28,3 +31,15 @@ def json_option(function: F) -> F:
     return click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")(
         function
     )
+
+
+def refuse(options: Mapping[str, Any], names: Iterable[str], why: str) -> None:
+    """Refuse options that were given and would change nothing: silence would mislead.
+
+    Raises:
+        ConfigError: one of ``names`` was given; it is named.
+    """
+    for name in names:
+        value = options[name]
+        if not (value is None or value is False or value == ()):  # 0 was said, too
+            raise ConfigError(f"--{name.replace('_', '-')}: has no effect here; {why}")

@@ -9,9 +9,11 @@ from typing import Any
 import click
 from msgspec.structs import replace
 
-from tcs_hil.cli.options import bus_options, json_option
+from tcs_hil.cli.damage import INCOMPLETE, warn_of
+from tcs_hil.cli.options import BUS_OPTIONS, bus_options, json_option, refuse
 from tcs_hil.cli.progress import progress_bar
-from tcs_hil.hil.logs.sources import find_sources
+from tcs_hil.console import counted
+from tcs_hil.hil.logs.sources import Sources, find_sources
 from tcs_hil.hil.replay.session import (
     Verdict,
     recorded_config,
@@ -52,22 +54,38 @@ def command(
 
     RUN is a run's folder or its files: a bus log (.blf, .asc, candump's .log,
     .mf4) and, of a run in real time, its flight recording, which tells exactly
-    when it ticked.  The exit status is 1 where something differs.
+    when it ticked.
+
+    Exit status: 0 nothing differs, 1 something does, 3 nothing does in what could be
+    read of a damaged log, 2 a mistake in what was asked.
 
     Example: tcs-hil replay runs/demo/runs/manoeuvre-1-quarter-car-kmpc-paper-lockstep
     """
+    if live:
+        refuse(options, ("controller", "preset"), "the running service has a law of its own")
+    else:
+        refuse(options, BUS_OPTIONS, "only --live needs a bus")
     sources = find_sources(run)
-    path = options.pop("config_path")
-    config = recorded_config(sources) if path is None else read_service(path)
-    if live:  # the run may have been recorded on another kind of bus
-        config = replace(config, bus=replace(config.bus, interface="auto"))
     with progress_bar("replaying") as advance:
         advance(0.0)
         verdict = (replay_live if live else replay_in_process)(
-            sources, _with_options(config, options), tolerance_nm
+            sources, _config(sources, live, options), tolerance_nm
         )
+    warn_of(verdict.lost)
     _show(verdict, as_json)
-    return 0 if verdict.comparison.same else DIFFERENT
+    if not verdict.comparison.same:
+        return DIFFERENT
+    return INCOMPLETE if verdict.lost else 0
+
+
+def _config(sources: Sources, live: bool, options: dict[str, Any]) -> ServiceConfig:
+    path = options["config_path"]
+    if path is not None:
+        return _with_options(read_service(path), options)
+    config = recorded_config(sources)
+    if live:  # the run may have been recorded on another kind of bus
+        config = replace(config, bus=replace(config.bus, interface="auto"))
+    return _with_options(config, options)
 
 
 def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConfig:
@@ -85,13 +103,23 @@ def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConf
 
 
 def _show(verdict: Verdict, as_json: bool) -> None:
-    ticks, grid, database, comparison = verdict
+    ticks, grid, database, comparison, lost, other = verdict
     if as_json:
-        click.echo(json.dumps({"grid": grid.name.lower()} | as_dict(ticks, comparison)))
+        laws = None if other is None else other._asdict()
+        told = as_dict(ticks, comparison) | {"other_law": laws, "lost": lost}
+        click.echo(json.dumps({"grid": grid.name.lower()} | told))
         return
+    if other is not None:
+        click.echo(f"recorded under {other.recorded}, replayed under {other.replayed}")
     click.echo(
-        f"{comparison.ticks} ticks compared, found by {grid.value}; {comparison.differing} differ; "
-        f"largest difference of a torque limit {comparison.largest_nm:.3g} Nm"
+        f"{counted(comparison.ticks, 'tick')} compared, found by {grid.value}; "
+        f"{comparison.differing} differ; {_apart(comparison.largest_nm)}"
     )
     for line in tell(ticks, comparison, database):
         click.echo(line)
+
+
+def _apart(largest_nm: float | None) -> str:
+    if largest_nm is None:
+        return "never both set a torque limit"
+    return f"largest difference of two torque limits {largest_nm:.3g} Nm"

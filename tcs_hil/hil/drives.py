@@ -16,7 +16,7 @@ from tcs_hil.canbus.vehicle_node import VehicleNode
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
 from tcs_hil.estimator.fused import FusedEstimator
-from tcs_hil.hil.logs.bus_log import read_log, stamp_ns
+from tcs_hil.hil.logs.bus_log import BrokenOffError, read_log, stamp_ns
 from tcs_hil.model.excitation import Runs
 from tcs_hil.model.observables import Sample
 from tcs_hil.model.vehicle import Vehicle
@@ -54,7 +54,11 @@ def read_drive(path: Path, settings: ControlSettings, vehicle: Vehicle) -> Runs:
     """
     if path.suffix == ".csv":
         return _read_csv(path, vehicle)
-    ticks = list(_ticks(path, settings, vehicle))
+    try:
+        ticks = list(_ticks(path, settings, vehicle))
+    except BrokenOffError as error:  # half a drive is not what was asked to be learnt from
+        remedy = f"`tcs-hil export {path} -o whole.log` saves what is there"
+        raise ConfigError(f"{error}; {remedy}") from error
     if len(ticks) < 2:
         raise ConfigError(f"{path}: holds no drive of this service's bus")
     return _aligned(ticks, settings.period_s)

@@ -34,8 +34,11 @@ def widen(run: Run) -> Wide:
 
     A table with several samples at one instant takes as many rows for it, so
     that nothing is lost.
+
+    Raises:
+        ConfigError: there is no table.
     """
-    keys = [_keys(table.time_ns) for table in run.tables]
+    keys = [_keys(table.time_ns) for table in run.decoded]
     rows, inverse = np.unique(np.concatenate(keys), axis=0, return_inverse=True)
     places = np.split(inverse, np.cumsum([len(table.time_ns) for table in run.tables])[:-1])
     return Wide(rows[:, 0], _columns(run, places, len(rows)))

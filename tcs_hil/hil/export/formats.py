@@ -11,7 +11,8 @@ from tcs_hil.hil.export.table import Run
 
 Writer = Callable[[Path, Run], None]
 
-MODULES = {".mf4": "mf4", ".parquet": "parquet", ".csv": "csv", ".log": "candump"}
+FRAMES_ALONE = ".log"
+MODULES = {".mf4": "mf4", ".parquet": "parquet", ".csv": "csv", FRAMES_ALONE: "candump"}
 
 
 def writer_of(path: Path) -> Writer:
@@ -31,3 +32,12 @@ def writer_of(path: Path) -> Writer:
         needed = f"{path}: needs {error.name}, which comes with pip install 'tcs-hil[bench]'"
         raise ConfigError(needed) from error
     return writer
+
+
+def contents(path: Path, run: Run) -> dict[str, int]:
+    """How much of a run a file of this name holds: counts by what is counted, in the singular."""
+    frames = {"frame": len(run.frames)}
+    if path.suffix.lower() == FRAMES_ALONE:
+        return frames
+    samples = sum(len(table.time_ns) for table in run.tables)
+    return {"sample": samples, "source": len(run.tables), **frames}

@@ -18,7 +18,7 @@ from tcs_hil.hil.export.table import NS_PER_S, Run, Table
 from tcs_hil.hil.export.telemetry import telemetry_table
 from tcs_hil.hil.export.time_base import Parts, TimeBase, align
 from tcs_hil.hil.export.truth import truth_table
-from tcs_hil.hil.logs.bus_log import read_log
+from tcs_hil.hil.logs.bus_log import Salvage, salvage_log
 from tcs_hil.hil.logs.sources import Sources
 from tcs_hil.runtime.recording import read, read_info
 
@@ -28,21 +28,22 @@ NO_JITTER = np.empty(0, np.int64)
 def gather(sources: Sources, dbc_path: Path | None = None) -> Run:
     """Read, align and decode a run; ``dbc_path`` replaces the DBC of this project.
 
+    A damaged log counts as far as it can be read; ``lost`` says so.
+
     Raises:
         TcsError: a file cannot be read, or its time is not known.
     """
     _, dbc = parse_dbc(dbc_path)
-    parts, scenario = _read(sources)
+    log = Salvage([]) if sources.bus is None else salvage_log(sources.bus)
+    parts, scenario = _read(sources, log.frames)
     base = align(parts, dbc)
     frames = [parts.frames[place] for place in base.order]
     tables = tuple(_tables(parts, frames, base, dbc))
-    if not tables:
-        raise ConfigError("nothing to export: no frame is of a message in the DBC")
-    return Run(base.start_ns, tables, _stamped(frames, base), _about(parts, scenario))
+    about = _about(parts, scenario)
+    return Run(base.start_ns, tables, _stamped(frames, base), about, log.lost)
 
 
-def _read(sources: Sources) -> tuple[Parts, str]:
-    frames = [] if sources.bus is None else list(read_log(sources.bus))
+def _read(sources: Sources, frames: list[can.Message]) -> tuple[Parts, str]:
     ticks = None if sources.flight is None else read(sources.flight)
     info = None if sources.flight is None else read_info(sources.flight)
     if sources.truth is None:

@@ -20,7 +20,7 @@ def write(path: Path, run: Run) -> None:
     with MDF(version="4.10") as mdf:
         mdf.header.start_time = run.start
         mdf.header.comment = _header_comment(run.description)
-        for table in run.tables:
+        for table in run.decoded:
             _append(mdf, table)
         mdf.save(path, overwrite=True, compression=DEFLATE_TRANSPOSED)
 

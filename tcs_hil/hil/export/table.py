@@ -11,6 +11,8 @@ import can
 import numpy as np
 from numpy.typing import NDArray
 
+from tcs_hil.errors import ConfigError
+
 Instants = NDArray[np.int64]  # (n,), ns since the start of the run
 NS_PER_S = 1_000_000_000
 
@@ -44,13 +46,15 @@ class Run:
     """A whole run: decoded messages, telemetry and truth, and the frames as they were.
 
     ``frames`` are stamped in seconds since the start; ``start_ns`` is when that
-    was, since 1970; ``about`` says in words what the run was.
+    was, since 1970; ``about`` says in words what the run was, ``lost`` what could
+    not be read of it.
     """
 
     start_ns: int
     tables: tuple[Table, ...]
     frames: tuple[can.Message, ...] = ()
     about: Mapping[str, str] = field(default_factory=dict)
+    lost: str = ""
 
     @property
     def start(self) -> datetime:
@@ -60,5 +64,17 @@ class Run:
 
     @property
     def description(self) -> dict[str, str]:
-        """What goes into a file's metadata: the start, then ``about``."""
-        return {"start": self.start.isoformat(), "start_ns": str(self.start_ns), **self.about}
+        """What goes into a file's metadata: the start, ``about``, and ``lost`` if anything was."""
+        start = {"start": self.start.isoformat(), "start_ns": str(self.start_ns)}
+        return {**start, **self.about, **({"lost": self.lost} if self.lost else {})}
+
+    @property
+    def decoded(self) -> tuple[Table, ...]:
+        """The tables, for a format that holds nothing else.
+
+        Raises:
+            ConfigError: there are none.
+        """
+        if not self.tables:
+            raise ConfigError("nothing to export: no frame is of a message in the DBC")
+        return self.tables

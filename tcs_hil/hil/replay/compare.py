@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from tcs_hil.canbus.codec import SignalSpec
+from tcs_hil.canbus.contract import NO_LIMIT_LABEL
 from tcs_hil.canbus.database import Database
 from tcs_hil.canbus.frame import Frame
 from tcs_hil.hil.replay.recorded import Answers, RecordedTick
@@ -16,8 +17,11 @@ Signals = Mapping[str, Sequence[str]]
 
 TORQUES = ("TorqueLimitL", "TorqueLimitR")
 LIMITS: Signals = {"TorqueLimit": (*TORQUES, "TcsActiveL", "TcsActiveR", "TcsState")}
-DECISIONS: Signals = {**LIMITS, "TcsStatus": ("TcsController", "TcsFaultCode")}
+LAW = "TcsController"
+DECISIONS: Signals = {**LIMITS, "TcsStatus": (LAW, "TcsFaultCode")}
 """Everything the service decides; what it only displays depends on the machine's speed."""
+OTHER_LAW: Signals = {**LIMITS, "TcsStatus": ("TcsFaultCode",)}
+"""What may agree where another law is in charge: its name cannot."""
 
 ROUNDING_NM = 1e-9
 """Of physical values made of raw ones that are exactly as far apart as allowed."""
@@ -27,9 +31,10 @@ Values = dict[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A signal that came out otherwise in the tick at ``place`` of the recording.
+    """A signal, recorded and replayed, in the tick at ``place`` of the recording.
 
-    ``replayed`` is NaN where the replayed service had not said anything yet.
+    ``replayed`` is NaN where the replayed service had not said anything yet; no
+    torque limit is an infinite one.
     """
 
     place: int
@@ -39,7 +44,7 @@ class Difference:
 
     @property
     def torque_nm(self) -> float:
-        """How far apart two torque limits are; infinite for any other signal."""
+        """How far apart two torque limits are; finite for nothing else."""
         apart_nm = abs(self.replayed - self.recorded)
         return apart_nm if self.signal.name in TORQUES else math.inf
 
@@ -48,12 +53,13 @@ class Difference:
 class Comparison:
     """How many ticks were compared and differ; what differs in the first one that does.
 
-    ``largest_nm`` is between any two torque limits, allowed or not.
+    ``largest_nm`` is between any two torque limits, allowed or not; None where
+    never both had one.
     """
 
     ticks: int
     differing: int
-    largest_nm: float
+    largest_nm: float | None
     first: tuple[Difference, ...]
 
     @property
@@ -75,16 +81,37 @@ def compare(
     """
     decoder = _Decoder(database, signals)
     recorded = [decoder.values(tick.answers) for tick in ticks]
-    differences = list(_differences(recorded, replayed, decoder))
-    allowed_nm = tolerance_nm + ROUNDING_NM
-    beyond = [each for each in differences if not each.torque_nm <= allowed_nm]
-    torques_nm = (each.torque_nm for each in differences if each.signal.name in TORQUES)
+    allowed_nm, largest_nm = tolerance_nm + ROUNDING_NM, None
+    beyond: list[Difference] = []
+    for each in _pairs(recorded, replayed, decoder):
+        if math.isfinite(each.torque_nm):
+            largest_nm = max(largest_nm or 0.0, each.torque_nm)
+        if each.recorded != each.replayed and not each.torque_nm <= allowed_nm:
+            beyond.append(each)
     return Comparison(
         ticks=sum(map(bool, recorded)),
         differing=len({each.place for each in beyond}),
-        largest_nm=max(torques_nm, default=0.0),
+        largest_nm=largest_nm,
         first=tuple(each for each in beyond if each.place == beyond[0].place),
     )
+
+
+def recorded_law(ticks: Iterable[RecordedTick], database: Database) -> str | None:
+    """The controller that the recorded service named first; None if it never did."""
+    decoder = _Decoder(database, {"TcsStatus": (LAW,)})
+    named = (decoder.values(tick.answers).get(LAW) for tick in ticks)
+    law = next((value for value in named if value is not None), None)
+    return None if law is None else shown(decoder.signals[LAW], law)
+
+
+def shown(signal: SignalSpec, value: float) -> str:
+    """A compared value in words."""
+    if math.isnan(value):
+        return "never said"
+    if math.isinf(value):
+        return NO_LIMIT_LABEL
+    labels = {physical: label for label, physical in signal.labels.items()}
+    return labels.get(value, f"{value:g}")
 
 
 class _Decoder:
@@ -101,23 +128,25 @@ class _Decoder:
         }
 
     def values(self, answers: Iterable[Frame]) -> Values:
-        """Newest physical value of each compared signal that is there."""
+        """Newest physical value of each compared signal that is there; infinite for no limit."""
         values: Values = {}
         for frame in answers:
             spec = self._specs.get(frame.frame_id)
             if spec is not None and len(frame.data) == spec.length:
                 names = (signal.name for signal in spec.signals)
                 values |= zip(names, spec.codec.decode(frame.data), strict=True)
-        return {name: value for name, value in values.items() if name in self.signals}
+        return {
+            name: math.inf if signal.labels.get(NO_LIMIT_LABEL) == values[name] else values[name]
+            for name, signal in self.signals.items()
+            if name in values
+        }
 
 
-def _differences(
+def _pairs(
     recorded: Iterable[Values], replayed: Answers, decoder: _Decoder
 ) -> Iterator[Difference]:
     newest: Values = {}
     for place, (values, answers) in enumerate(zip(recorded, replayed, strict=True)):
         newest |= decoder.values(answers)
         for name, value in values.items():
-            if newest.get(name) != value:
-                said = newest.get(name, math.nan)
-                yield Difference(place, decoder.signals[name], value, said)
+            yield Difference(place, decoder.signals[name], value, newest.get(name, math.nan))

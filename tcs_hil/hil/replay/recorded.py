@@ -35,7 +35,8 @@ class RecordedTick(NamedTuple):
 
 
 class Recording(NamedTuple):
-    """The ticks of a recording, oldest first, and how they were found."""
+    """The ticks of a recording, oldest first, how they were found, and what was lost of it."""
 
     ticks: list[RecordedTick]
     grid: Grid
+    lost: str = ""

@@ -11,7 +11,14 @@ from plant_emulator.undisturbed import undisturbed
 from tcs_hil.canbus.database import Database, load_database
 from tcs_hil.canbus.port import open_port
 from tcs_hil.hil.logs.sources import Sources
-from tcs_hil.hil.replay.compare import DECISIONS, LIMITS, Comparison, compare
+from tcs_hil.hil.replay.compare import (
+    DECISIONS,
+    LIMITS,
+    OTHER_LAW,
+    Comparison,
+    compare,
+    recorded_law,
+)
 from tcs_hil.hil.replay.in_process import replay
 from tcs_hil.hil.replay.live import replay_in_lockstep, replay_in_real_time
 from tcs_hil.hil.replay.load import load
@@ -24,13 +31,25 @@ SEND_TIMEOUT_S = 1.0
 """A full bus is waited for: the recording has all the time in the world."""
 
 
+class OtherLaw(NamedTuple):
+    """The controller recorded, and the one the replayed service ran instead."""
+
+    recorded: str
+    replayed: str
+
+
 class Verdict(NamedTuple):
-    """What was replayed and what came of it."""
+    """What was replayed and what came of it; ``other_law`` where another was in charge.
+
+    ``lost`` says what could not be read of the log.
+    """
 
     ticks: list[RecordedTick]
     grid: Grid
     database: Database
     comparison: Comparison
+    lost: str
+    other_law: OtherLaw | None = None
 
 
 def recorded_config(sources: Sources) -> ServiceConfig:
@@ -49,9 +68,12 @@ def replay_in_process(sources: Sources, config: ServiceConfig, tolerance_nm: flo
         TcsError: a file or the model cannot be used.
     """
     database, path = _database(config)
-    ticks, grid = load(sources, path, _period_ns(config))
-    comparison = compare(ticks, replay(ticks, config), database, DECISIONS, tolerance_nm)
-    return Verdict(ticks, grid, database, comparison)
+    ticks, grid, lost = load(sources, path, _period_ns(config))
+    law, own = recorded_law(ticks, database), config.kind.name
+    other = None if law is None or law == own else OtherLaw(law, own)
+    signals = DECISIONS if other is None else OTHER_LAW
+    comparison = compare(ticks, replay(ticks, config), database, signals, tolerance_nm)
+    return Verdict(ticks, grid, database, comparison, lost, other)
 
 
 def replay_live(sources: Sources, config: ServiceConfig, tolerance_nm: float) -> Verdict:
@@ -64,7 +86,7 @@ def replay_live(sources: Sources, config: ServiceConfig, tolerance_nm: float) ->
         TcsError: a file or the bus cannot be used, or the service is silent.
     """
     database, path = _database(config)
-    recorded, grid = load(sources, path, _period_ns(config))
+    recorded, grid, lost = load(sources, path, _period_ns(config))
     ticks = list(dropwhile(lambda tick: not tick.inputs, recorded))
     clock, signals = MonotonicClock(), DECISIONS if grid is Grid.BENCH else LIMITS
     bus: BusSettings = config.bus
@@ -75,7 +97,8 @@ def replay_live(sources: Sources, config: ServiceConfig, tolerance_nm: float) ->
         else:
             with undisturbed():
                 answers = replay_in_real_time(ticks, port, clock, database, _period_ns(config))
-    return Verdict(ticks, grid, database, compare(ticks, answers, database, signals, tolerance_nm))
+    comparison = compare(ticks, answers, database, signals, tolerance_nm)
+    return Verdict(ticks, grid, database, comparison, lost)
 
 
 def _database(config: ServiceConfig) -> tuple[Database, Path | None]:

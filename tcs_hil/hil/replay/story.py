@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from tcs_hil.canbus.codec import SignalSpec
+from tcs_hil.canbus.contract import NO_LIMIT_LABEL
 from tcs_hil.canbus.database import Database
 from tcs_hil.canbus.frame import Frame
-from tcs_hil.hil.replay.compare import Comparison, Difference
+from tcs_hil.hil.replay.compare import Comparison, Difference, shown
 from tcs_hil.hil.replay.recorded import RecordedTick
 
 FRAMES_BEFORE = 12
@@ -25,8 +25,8 @@ def tell(
         time_s = (tick.now_ns - ticks[0].now_ns) * S_PER_NS
         yield (
             f"tick {tick.number}, {time_s:.3f} s: {difference.signal.name} was "
-            f"{_shown(difference.signal, difference.recorded)}, is "
-            f"{_shown(difference.signal, difference.replayed)}"
+            f"{shown(difference.signal, difference.recorded)}, is "
+            f"{shown(difference.signal, difference.replayed)}"
         )
     if comparison.first:
         yield "what was on the bus before, newest last:"
@@ -46,14 +46,20 @@ def as_dict(ticks: Sequence[RecordedTick], comparison: Comparison) -> dict[str, 
 
 def _difference(ticks: Sequence[RecordedTick], difference: Difference) -> dict[str, Any]:
     tick = ticks[difference.place]
-    silent = math.isnan(difference.replayed)
     return {
         "tick": tick.number,
         "time_s": (tick.now_ns - ticks[0].now_ns) * S_PER_NS,
         "signal": difference.signal.name,
-        "recorded": difference.recorded,
-        "replayed": None if silent else difference.replayed,
+        "recorded": _as_json(difference.recorded),
+        "replayed": _as_json(difference.replayed),
     }
+
+
+def _as_json(value: float) -> float | str | None:
+    """JSON knows neither NaN nor infinity."""
+    if math.isinf(value):
+        return NO_LIMIT_LABEL
+    return None if math.isnan(value) else value
 
 
 def _before(ticks: Sequence[RecordedTick], place: int) -> list[tuple[int, Frame]]:
@@ -67,17 +73,10 @@ def _before(ticks: Sequence[RecordedTick], place: int) -> list[tuple[int, Frame]
     return frames[-FRAMES_BEFORE:]
 
 
-def _shown(signal: SignalSpec, value: float) -> str:
-    if math.isnan(value):
-        return "never said"
-    labels = {physical: label for label, physical in signal.labels.items()}
-    return labels.get(value, f"{value:g}")
-
-
 def _decoded(frame: Frame, database: Database) -> str:
     for spec in database.messages.values():
         if (frame.frame_id, len(frame.data)) == (spec.frame_id, spec.length):
             values = zip(spec.signals, spec.codec.decode(frame.data), strict=True)
-            told = (f"{signal.name}={_shown(signal, value)}" for signal, value in values)
+            told = (f"{signal.name}={shown(signal, value)}" for signal, value in values)
             return f"{spec.name}: {' '.join(told)}"
     return frame.data.hex()

@@ -88,11 +88,13 @@ def test_another_dbc_decodes_another_bus(tmp_path: Path) -> None:
     assert len(run.frames) == 4  # what could not be decoded is still in the log
 
 
-def test_a_log_of_strangers_holds_nothing_to_export(tmp_path: Path) -> None:
+def test_a_log_of_strangers_has_frames_and_no_signals(tmp_path: Path) -> None:
     log = tmp_path / "drive.log"
     log.write_text("(1700000000.000000) can0 7AA#00\n")
-    with pytest.raises(ConfigError, match="nothing to export"):
-        gather(Sources(bus=log))
+    run = gather(Sources(bus=log))
+    assert len(run.frames) == 1
+    with pytest.raises(ConfigError, match="no frame is of a message in the DBC"):
+        _ = run.decoded
 
 
 def test_a_damaged_truth_is_refused_by_name(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.frame import Frame
 from tcs_hil.canbus.tcs_node import TcsNode
-from tcs_hil.hil.replay.compare import DECISIONS, LIMITS, Comparison, Signals, compare
+from tcs_hil.hil.replay.compare import DECISIONS, LIMITS, Comparison, Signals, compare, recorded_law
 from tcs_hil.hil.replay.recorded import RecordedTick
 from tcs_hil.hil.replay.story import as_dict, tell
 from tcs_hil.signals import Command, TcsState, TorqueLimits
@@ -65,6 +65,26 @@ def test_a_torque_limit_may_differ_by_the_tolerance_and_no_more() -> None:
     assert verdict([GOOD], [close], tolerance_nm=0.05).same
     assert not verdict([GOOD], [far], tolerance_nm=0.05).same
     assert verdict([GOOD], [far], tolerance_nm=0.5).largest_nm == pytest.approx(0.1)
+
+
+def test_no_limit_is_no_torque() -> None:
+    unlimited = limited(math.inf)
+    assert verdict([unlimited] * 2, [unlimited] * 2).same
+    comparison = verdict([GOOD, GOOD], [limited(90.0), unlimited], tolerance_nm=1000.0)
+    assert [(each.place, each.replayed) for each in comparison.first] == [(1, math.inf)]
+    assert comparison.largest_nm == pytest.approx(10.0)
+    (told,) = as_dict(ticks(GOOD, GOOD), comparison)["first"]
+    assert (told["recorded"], told["replayed"]) == (100.0, "no limit")
+
+
+def test_without_two_limits_there_is_no_difference_in_nm() -> None:
+    recorded = [replace(GOOD, limits=TorqueLimits(100.0, 100.0))]
+    assert verdict(recorded, [replace(GOOD, limits=TorqueLimits())]).largest_nm is None
+
+
+def test_the_recorded_law_is_the_one_its_service_named() -> None:
+    assert recorded_law(ticks(GOOD, GOOD), DATABASE) == "PI"
+    assert recorded_law([], DATABASE) is None
 
 
 def test_no_tolerance_covers_a_state() -> None:

@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 from msgspec.structs import replace
 
 from plant_emulator.scenario import load_scenario
+from tcs_hil.cli.damage import INCOMPLETE
 from tcs_hil.cli.replay import command
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
@@ -47,7 +48,10 @@ def test_the_command_says_that_nothing_differs(kept: Path) -> None:
 def test_another_law_is_told_from_the_recorded_one_with_status_1(kept: Path) -> None:
     result = run(kept, "--controller", "off")
     assert result.return_value == 1
-    assert "s: TcsController was PI, is OFF" in result.output
+    assert "recorded under PI, replayed under OFF" in result.output
+    assert "493 differ; never both set a torque limit" in result.output
+    assert "tick 67, 0.134 s: TorqueLimitL was 132.75, is no limit" in result.output
+    assert "TcsController was" not in result.output
     assert "what was on the bus before" in result.output
 
 
@@ -55,13 +59,43 @@ def test_for_a_program_the_first_difference_comes_as_json(kept: Path) -> None:
     result = run(kept, "--controller", "off", "--json")
     told = json.loads(result.stdout)
     assert (told["grid"], told["ticks"]) == ("bench", 600)
+    assert told["other_law"] == {"recorded": "PI", "replayed": "OFF"}
+    assert (told["largest_nm"], told["lost"]) == (None, "")
     assert told["first"][0] == {
-        "tick": 0,
-        "time_s": 0.0,
-        "signal": "TcsController",
-        "recorded": 1.0,
-        "replayed": 0.0,
+        "tick": 67,
+        "time_s": 0.134,
+        "signal": "TorqueLimitL",
+        "recorded": 132.75,
+        "replayed": "no limit",
     }
+
+
+def test_of_a_log_cut_short_the_rest_is_compared_and_the_loss_said(
+    kept: Path, tmp_path: Path
+) -> None:
+    cut = tmp_path / "cut.blf"
+    cut.write_bytes((kept / "bus.blf").read_bytes()[:20_000])
+    result = run(cut, "--config", kept / "service.toml", "--json")
+    told = json.loads(result.stdout)
+    assert result.return_value == INCOMPLETE
+    assert 0 < told["ticks"] < 600
+    assert told["differing"] == 0
+    assert f"tcs-hil: warning: {cut}: is cut short" in result.stderr
+    assert told["lost"] in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (("--channel", "vcan0"), "--channel: has no effect here; only --live needs a bus"),
+        (("--live", "--controller", "pi"), "--controller: has no effect here; the running"),
+    ],
+)
+def test_an_option_without_effect_is_refused(
+    kept: Path, options: tuple[str, ...], complaint: str
+) -> None:
+    with pytest.raises(ConfigError, match=complaint):
+        run(kept, *options)
 
 
 def test_one_bit_of_one_recorded_limit_is_found(kept: Path, tmp_path: Path) -> None:

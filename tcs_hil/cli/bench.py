@@ -11,9 +11,9 @@ import msgspec
 from rich.console import Console
 from rich.markdown import Markdown
 
-from tcs_hil.cli.options import json_option
+from tcs_hil.cli.options import json_option, refuse
 from tcs_hil.cli.progress import progress_bar
-from tcs_hil.errors import ConfigError
+from tcs_hil.errors import ConfigError, offer
 from tcs_hil.hil.bench.effort import FULL, QUICK
 from tcs_hil.hil.bench.page import page
 from tcs_hil.hil.bench.result import MEASURES, Result, measure
@@ -46,6 +46,10 @@ def command(
     if seconds is not None:
         effort = effort._replace(bus_s=seconds)
     parts = _parts(only)
+    if "bus" not in parts:
+        refuse(
+            {"seconds": seconds}, ["seconds"], "it is for the part `bus`, which --only leaves out"
+        )
     with progress_bar("bench") as advance:
         result = measure(parts, effort, advance)
     if write is not None:
@@ -59,7 +63,7 @@ def _parts(only: str | None) -> list[str]:
     parts = list(MEASURES) if only is None else only.split(",")
     for part in parts:
         if part not in MEASURES:
-            raise ConfigError(f"--only {part}: the parts are {', '.join(MEASURES)}")
+            raise ConfigError(f"--only: there is no part {part!r}{offer(part, MEASURES)}")
     return parts
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +14,12 @@ from msgspec.structs import replace
 from rich.console import Console
 from rich.table import Table as Page
 
+from tcs_hil.cli.options import refuse
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import convert
+from tcs_hil.console import counted
 from tcs_hil.errors import ConfigError
+from tcs_hil.hil.processes import interrupted_by_sigterm
 from tcs_hil.hil.study.design import corners, points
 from tcs_hil.hil.study.plan import Plan, Study, read_plan
 from tcs_hil.hil.study.trial import Row, job, run
@@ -49,11 +54,17 @@ def command(study: Path, out: Path | None, only: int | None, as_json: bool, **op
     """
     changes = {name: options[name] for name in ("points", "seed") if options[name] is not None}
     plan = _with(read_plan(study), changes)
+    if plan.study.design == "grid":
+        refuse(options, ["points", "seed"], "the steps of a grid make its points")
+    if options["scheduler"] is not None:
+        refuse(options, ["jobs"], "the cluster's workers do the work")
     folder = out or Path("runs") / study.stem
     if only is not None:
+        refuse(options, ["jobs", "scheduler"], "--only drives one point, here")
         _again(plan, only, folder, as_json)
         return
-    rows, page = _campaign(plan, folder, options["jobs"], options["scheduler"])
+    with interrupted_by_sigterm():
+        rows, page = _campaign(plan, folder, options["jobs"], options["scheduler"])
     if as_json:
         click.echo(msgspec.json.encode(rows).decode())
     else:
@@ -80,14 +91,23 @@ def _campaign(
     table = Table(folder, plan)
     tasks = [(index, point) for index, point in everything if index not in table.done]
     if tasks:
-        with workers(scheduler, jobs) as client, progress_bar(plan.study.scenario) as advance:
-            for rows in drive(client, plan, tasks):
-                table.add(rows)
-                advance(len(table.done) / len(everything))
+        try:
+            with workers(scheduler, jobs) as client, progress_bar(plan.study.scenario) as advance:
+                for rows in drive(client, plan, tasks):
+                    table.add(rows)
+                    advance(len(table.done) / len(everything))
+        except KeyboardInterrupt:
+            _say_how_to_go_on(len(table.done), len(everything))
+            raise
         table.finish()
     figure = folder / "campaign.png"
     save_study_figure(figure, plan.study, table.rows)
     return table.rows, [f"Table: {table.path}", f"Figure: {figure}"]
+
+
+def _say_how_to_go_on(done: int, points: int) -> None:
+    same = shlex.join(("tcs-hil", *sys.argv[1:]))
+    click.echo(f"interrupted; {done} of {points} points are kept, go on with: {same}", err=True)
 
 
 def _again(plan: Plan, index: int, folder: Path, as_json: bool) -> None:
@@ -116,7 +136,7 @@ def _again_with(study: Path, folder: Path, changes: dict[str, int]) -> str:
 def _show(rows: list[Row], again: str, lines: list[str]) -> None:
     from tcs_hil.hil.study.worst import success_share, worst  # noqa: PLC0415
 
-    click.echo(f"{len(rows)} runs, success {success_share(rows):.1%}")
+    click.echo(f"{counted(len(rows), 'run')}, success {success_share(rows):.1%}")
     page = Page(title="Worst runs", title_justify="left")
     for name in ("index", *FIGURES):
         page.add_column(name, justify="right")

@@ -10,7 +10,7 @@ from typing import Any, get_args
 import click
 import msgspec
 
-from tcs_hil.cli.options import bus_options, json_option
+from tcs_hil.cli.options import BUS_OPTIONS, bus_options, json_option, refuse
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.cli.verdicts import show
 from tcs_hil.errors import ConfigError
@@ -97,15 +97,9 @@ def command(scenarios: tuple[str, ...], **options: Any) -> None:
 
     Example: tcs-hil hil launch-mu-030 my-scenario.toml --controller kmpc,nmpc -j 2
     """
-    cases = _cases(scenarios, options)
-    bench = Bench(
-        mode=options["mode"],
-        folder=options["out"],
-        interface=options["interface"] or "auto",
-        channel=options["channel"] or ("vcan0" if options["interface"] else None),
-        bitrate=options["bitrate"],
-    )
+    cases, bench = _cases(scenarios, options), _bench(options)
     jobs = min(bench.jobs(options["jobs"]), len(cases))
+    bench.check_bus()
     outputs = _outputs(options)
     started = datetime.now().astimezone()
     with progress_bar("starting") as advance, interrupted_by_sigterm():
@@ -113,6 +107,21 @@ def command(scenarios: tuple[str, ...], **options: Any) -> None:
     suite = sum_up(", ".join((*options["suites"], *scenarios)), results, started, jobs)
     _publish(suite, outputs)
     click.get_current_context().exit(EXIT_STATUS[suite.verdict])
+
+
+def _bench(options: dict[str, Any]) -> Bench:
+    if options["mode"] == "in-process":
+        refuse(options, BUS_OPTIONS, "a run in process has no bus")
+    channel = options["channel"] or ("vcan0" if options["interface"] else None)
+    if channel is None:
+        refuse(options, ["bitrate"], "without --channel each case has an embedded bus of its own")
+    return Bench(
+        options["mode"],
+        options["out"],
+        options["interface"] or "auto",
+        channel,
+        options["bitrate"],
+    )
 
 
 def _cases(scenarios: tuple[str, ...], options: dict[str, Any]) -> list[Case]:
@@ -134,7 +143,8 @@ def _controllers(names: str | None) -> list[ControllerName | None]:
     try:
         return [CONTROLLERS[CONTROLLERS.index(name)] for name in names.split(",")]
     except ValueError:
-        raise ConfigError(f"--controller {names}: there are {', '.join(CONTROLLERS)}") from None
+        known = ", ".join(CONTROLLERS)
+        raise ConfigError(f"--controller {names}: the laws are {known}") from None
 
 
 def _outputs(options: dict[str, Any]) -> Outputs:

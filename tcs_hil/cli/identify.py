@@ -9,7 +9,7 @@ import click
 from msgspec.structs import replace
 
 from tcs_hil.cli.identified import show_bank, show_predictor, show_refined
-from tcs_hil.cli.options import json_option
+from tcs_hil.cli.options import json_option, refuse
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import read_toml
 from tcs_hil.control.settings import ControlSettings
@@ -81,7 +81,7 @@ def command(preset: str, output: Path, as_json: bool, **options: Any) -> None:
 
 
 def _paper(output: Path, as_json: bool, **options: Any) -> None:
-    _refuse("preset paper", {"--from": options["recordings"]})
+    refuse({"from": options["recordings"]}, ["from"], "it refines the bank of --preset default")
     settings = _paper_settings(options)
     seed = DEFAULT_SEED if options["seed"] is None else options["seed"]
     with progress_bar("simulating the data set") as advance:
@@ -102,7 +102,7 @@ def _paper_settings(options: dict[str, Any]) -> IdentificationSettings:
 
 
 def _default(output: Path, as_json: bool, **options: Any) -> None:
-    _refuse("preset default", {f"--{key}": options[key] for key in PAPER_ONLY})
+    refuse(options, PAPER_ONLY, "it is for --preset paper")
     path = options["settings_path"]
     settings = read_toml(path, BankSettings) if path else BankSettings()
     seed = BANK_SEED if options["seed"] is None else options["seed"]
@@ -113,8 +113,8 @@ def _default(output: Path, as_json: bool, **options: Any) -> None:
 
 
 def _recorded(output: Path, as_json: bool, **options: Any) -> None:
-    refused = {f"--{key}": options[key] for key in (*PAPER_ONLY, "seed")}
-    _refuse("--from", refused | {"--settings": options["settings_path"]})
+    said = options | {"settings": options["settings_path"]}
+    refuse(said, (*PAPER_ONLY, "seed", "settings"), "--from refines the bank that is shipped")
     control = ControlSettings()
     bank = KoopmanBank.load(default_bank_path(), control.period_s)
     vehicle = bank.provenance.settings.vehicle
@@ -126,10 +126,3 @@ def _recorded(output: Path, as_json: bool, **options: Any) -> None:
     refined = refine(bank, drives)
     refined.bank.save(output)
     show_refined(refined, output, as_json)
-
-
-def _refuse(whom: str, options: dict[str, object]) -> None:
-    """Say so instead of ignoring an option."""
-    for name, value in options.items():
-        if value not in (None, ()):
-            raise ConfigError(f"{name} means nothing to {whom}")

@@ -12,10 +12,13 @@ from tcs_hil.errors import ConfigError
 from tcs_hil.runtime.exporter import FlightCollector
 from tcs_hil.runtime.follower import Follower
 from tcs_hil.runtime.notify import notify
+from tcs_hil.runtime.recording import read_info
 from tcs_hil.runtime.stop import StopRequest
 
 STOP_POLL_S = 0.1
 PORT_MAX = 65_535
+BEGIN = 8
+"""Bytes of a recording that are zero until its header is whole."""
 
 
 @click.command()
@@ -36,6 +39,7 @@ def command(recording: Path, listen: str) -> None:
     Example: tcs-hil metrics /dev/shm/flight --listen 127.0.0.1:9555
     """
     host, port = _address(listen)
+    _refuse_foreign(recording)
     registry = CollectorRegistry()
     registry.register(FlightCollector(Follower(recording), time.monotonic_ns))
     try:
@@ -49,6 +53,19 @@ def command(recording: Path, listen: str) -> None:
             thread.join(STOP_POLL_S)
     server.shutdown()
     server.server_close()
+
+
+def _refuse_foreign(path: Path) -> None:
+    """Refuse what will never be a flight recording; one that is still to come is none."""
+    try:
+        with path.open("rb") as file:
+            begin = file.read(BEGIN)
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from error
+    if begin.strip(b"\0"):  # else the service is just making it
+        read_info(path)
 
 
 def _address(listen: str) -> tuple[str, int]:

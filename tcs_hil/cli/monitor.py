@@ -11,7 +11,7 @@ import msgspec
 
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.port import open_port
-from tcs_hil.cli.options import bus_options
+from tcs_hil.cli.options import bus_options, refuse
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.monitor.snapshot import Snapshot
 from tcs_hil.hil.monitor.sources import BusSource, FlightSource, Source
@@ -41,8 +41,11 @@ def command(
 
     Example: tcs-hil monitor --channel vcan0 --control
     """
-    if flight is not None and (control or any(bus.values())):
-        raise ConfigError("--flight: a recording has no bus to choose and nobody to control")
+    said = {"control": control, **bus}
+    if flight is not None:
+        refuse(said, said, "--flight has no bus to choose and nobody to control")
+    if once or as_json:
+        refuse(said, ["control"], "a look of a second gives no keys to press")
     source = FlightSource(flight) if flight is not None else _bus_source(in_control=control, **bus)
     try:
         if once or as_json:

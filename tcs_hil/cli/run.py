@@ -9,7 +9,7 @@ import click
 from msgspec import to_builtins
 from msgspec.structs import replace
 
-from tcs_hil.cli.options import bus_options, json_option
+from tcs_hil.cli.options import bus_options, json_option, refuse
 from tcs_hil.cli.summary import show_summary
 from tcs_hil.config import convert
 from tcs_hil.service.daemon import serve
@@ -77,5 +77,17 @@ def _with_options(config: ServiceConfig, options: dict[str, Any]) -> ServiceConf
         tick=replace(config.tick, **said("trigger", "phase_us", "spin_us", "priority", "cpu")),
         recorder=replace(config.recorder, **said("path")),
     )
+    _refuse_idle(merged, options)
     # Put together from parts that were never checked together: bounds are looked at again.
     return convert(to_builtins(merged), ServiceConfig, "command line")
+
+
+def _refuse_idle(config: ServiceConfig, options: dict[str, Any]) -> None:
+    """Refuse what the law or the trigger of this run knows nothing of."""
+    trigger = config.tick.trigger
+    if config.controller != "kmpc":
+        refuse(options, ["model"], f"the law is {config.controller}, and a predictor is kmpc's")
+    if trigger != "timer":
+        refuse(options, ["phase_us"], f"the trigger is {trigger}, and a grid is the timer's")
+    if trigger == "lockstep":
+        refuse(options, ["spin_us", "priority", "cpu"], "in lockstep the bench sets the pace")

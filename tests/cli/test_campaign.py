@@ -1,4 +1,9 @@
 import json
+import os
+import re
+import signal
+import subprocess
+import sys
 from functools import partial
 
 import pyarrow.parquet as pq
@@ -64,6 +69,25 @@ def test_a_campaign_goes_on_where_it_was_and_tells_how_to_drive_one_again(campai
     assert _known([row]) == _known([first[row["index"]]])
     for kept in ("toml", "service.toml"):
         assert (folder / "out" / f"point-{row['index']}.{kept}").is_file()
+
+
+def test_an_interrupted_campaign_says_how_to_go_on(folder):
+    arguments = ("campaign", "study.toml", "--points", "4000", "--out", "out", "-j", "1")
+    with subprocess.Popen(
+        [sys.executable, "-m", "tcs_hil", *arguments],
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=folder,
+        start_new_session=True,
+    ) as child:
+        assert "short" in child.stderr.readline()  # progress: the first batch is kept
+        os.killpg(child.pid, signal.SIGINT)  # as a terminal does
+        error = child.stderr.read()
+        assert child.wait() == 130
+    told = re.search(r"interrupted; (\d+) of 4000 points are kept, go on with: (.+)\n", error)
+    assert int(told[1]) >= 4
+    assert told[2].split()[-len(arguments) :] == list(arguments)
+    assert "Traceback" not in error
 
 
 @pytest.mark.parametrize(

@@ -73,10 +73,14 @@ def test_junit_is_written_where_it_is_wanted(hil, tmp_path: Path) -> None:
     ("arguments", "complaint"),
     [
         (["--suite", "lunch"], "no suite 'lunch'"),
-        (["--controller", "kpmc"], "--controller kpmc: there are off, pi, kmpc, nmpc"),
+        (["--controller", "kpmc"], "--controller kpmc: the laws are off, pi, kmpc, nmpc"),
         (["--baseline", "nowhere"], "nowhere/results.json"),
         (["no-such-scenario"], "'no-such-scenario' is neither"),
         (["--channel", "can0", "-j", "2", "--mode", "lockstep"], "one after another"),
+        (["--channel", "can77", "--mode", "lockstep"], "there is no CAN interface can77"),
+        (["--interface", "telepathy", "--mode", "lockstep"], "cannot open telepathy vcan0"),
+        (["--channel", "can0"], "--channel: has no effect here; a run in process has no bus"),
+        (["--bitrate", "500000", "--mode", "lockstep"], "--bitrate: has no effect here; without"),
     ],
 )
 def test_a_mistake_is_refused_by_name_before_anything_runs(

@@ -86,9 +86,12 @@ def test_a_recorded_drive_refines_the_bank(drive: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (("--preset", "paper", "--from", "drive.csv"), "--from means nothing to preset paper"),
-        (("--preset", "default", "--order", "2"), "--order means nothing to preset default"),
-        (("--preset", "default", "--from", "d.csv", "--seed", "1"), "--seed means nothing"),
+        (("--preset", "paper", "--from", "drive.csv"), "--from: has no effect here; it refines"),
+        (("--preset", "default", "--order", "2"), "--order: has no effect here; it is for"),
+        (
+            ("--preset", "default", "--from", "d.csv", "--seed", "1"),
+            "--seed: has no effect here; --from",
+        ),
         (("--preset", "default", "--from", "nowhere.csv"), "nowhere.csv: cannot be read"),
     ],
 )

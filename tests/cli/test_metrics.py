@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from runtime.fakes import RUN, numbered
 
 from tcs_hil.cli.metrics import command
-from tcs_hil.errors import ConfigError
+from tcs_hil.errors import ConfigError, TcsError
 from tcs_hil.runtime.recorder import FlightRecorder
 
 
@@ -49,6 +49,22 @@ def test_a_recording_that_comes_later_is_served_and_a_signal_ends_it(tmp_path: P
         assert 'tcs_hil_run_info{bus="virtual:test",controller="nmpc"} 1.0' in text
         child.send_signal(signal.SIGTERM)
         assert child.wait(10.0) == 0
+
+
+def test_a_file_that_is_no_recording_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "drive.blf"
+    path.write_bytes(b"LOGG and more of it" * 100)
+    error = CliRunner().invoke(command, [str(path)]).exception
+    assert isinstance(error, TcsError)
+    assert str(error) == f"{path}: not a flight recording"
+
+
+@pytest.mark.parametrize("content", [b"", bytes(8192)])
+def test_a_recording_that_is_just_being_made_is_waited_for(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "flight"
+    path.write_bytes(content)
+    with serving(path) as (_, url):
+        assert "tcs_hil_up 0.0" in asked(url)
 
 
 @pytest.mark.parametrize("listen", ["9555", ":9555", "127.0.0.1:", "127.0.0.1:99999"])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import os
+import signal
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
@@ -12,7 +14,7 @@ from tcs_hil.hil.study.plan import Plan
 from tcs_hil.hil.study.trial import Row, run
 
 try:
-    from distributed import Client, LocalCluster, as_completed
+    from distributed import Client, LocalCluster, WorkerPlugin, as_completed
 except ImportError as error:
     raise ConfigError("a study needs distributed: pip install 'tcs-hil[bench]'") from error
 
@@ -41,6 +43,7 @@ def workers(scheduler: str | None, processes: int | None) -> Iterator[Client]:
             ) as cluster,
             Client(cluster) as client,  # type: ignore[no-untyped-call]
         ):
+            client.register_plugin(_QuietEnd())
             yield client
         return
     try:
@@ -49,6 +52,15 @@ def workers(scheduler: str | None, processes: int | None) -> Iterator[Client]:
         raise ConfigError(f"--scheduler {scheduler}: nobody answers ({error})") from error
     with client:
         yield client
+
+
+class _QuietEnd(WorkerPlugin):
+    """For workers of our own: the campaign hears Ctrl-C and ends them; they say nothing of it."""
+
+    def setup(self, worker: object) -> None:  # noqa: ARG002 - Dask's signature
+        """Dask calls it in each worker's main thread, also in those that replace a dead one."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
 
 
 def drive(client: Client, plan: Plan, tasks: Sequence[Task]) -> Iterator[list[Row]]:

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from msgspec import structs
 
+from tcs_hil.canbus.bus import open_bus
 from tcs_hil.errors import ConfigError, TcsError
 from tcs_hil.hil.judging.evidence import Evidence
 from tcs_hil.hil.judging.measured import CannotJudgeError
@@ -53,6 +54,15 @@ class Bench:
         if shared or self.mode == "real-time":
             return wanted or 1  # side by side they would disturb each other's clock
         return wanted or os.cpu_count() or 1
+
+    def check_bus(self) -> None:
+        """Open the bus once where it is a given one: what is misspelt must not cost a run.
+
+        Raises:
+            BusError: it cannot be opened.
+        """
+        if self.channel is not None and self.mode != "in-process":
+            open_bus(self.interface, self.channel, self.bitrate)[0].shutdown()
 
     def bus(self, worker: str) -> BusSettings:
         """The bus of one worker."""

@@ -18,9 +18,7 @@ def own_car(scenario: Scenario) -> Car:
     Raises:
         ConfigError: there is no such file or class, or the unit cannot be used.
     """
-    source = scenario.vehicle.source
-    if source is None:
-        raise ConfigError("variant `own` needs `source` under [vehicle]")
+    source = str(scenario.vehicle.source)
     if source.endswith(".fmu"):
         from plant_emulator.fmu_car import FmuCar  # noqa: PLC0415 - fmpy is an extra
 
@@ -30,13 +28,14 @@ def own_car(scenario: Scenario) -> Car:
 
 def _python_car(source: str, scenario: Scenario) -> Car:
     file, _, name = source.rpartition(":")
-    if not file or not Path(file).is_file():
-        raise ConfigError(f"{source}: not an .fmu, and no file.py:Class that exists")
     try:
         names = runpy.run_path(file)
     except Exception as error:
         raise ConfigError(f"{file}: cannot be run ({error!r})") from error
     if name not in names:
         raise ConfigError(f"{file}: has no {name}")
-    car: Car = names[name](scenario)
+    try:
+        car: Car = names[name](scenario)
+    except Exception as error:
+        raise ConfigError(f"{source}: cannot be made of a scenario ({error!r})") from error
     return car

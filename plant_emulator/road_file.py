@@ -25,7 +25,9 @@ def read_road(path: Path) -> tuple[Patch, ...]:
             table = csv.DictReader(file, skipinitialspace=True)
             lines = [{k: v for k, v in line.items() if v} for line in table]
         patches = msgspec.convert(lines, tuple[Patch, ...], strict=False)
-    except (OSError, ValueError, csv.Error, msgspec.ValidationError) as error:
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from error
+    except (ValueError, csv.Error, msgspec.ValidationError) as error:
         raise ConfigError(f"{path}: cannot be read as a road: {error}") from error
     if not patches:
         raise ConfigError(f"{path}: a road needs at least one patch")

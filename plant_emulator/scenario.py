@@ -25,7 +25,7 @@ from plant_emulator.sensors import Sensors
 from plant_emulator.tir import read_tir
 from plant_emulator.tyre import Tyre
 from plant_emulator.whole_car import WholeCar
-from tcs_hil.config import read_toml
+from tcs_hil.config import FilePath, read_toml
 from tcs_hil.errors import ConfigError, offer
 
 MOST_DOUBLINGS = 4
@@ -45,13 +45,18 @@ class VehicleTable(Table, frozen=True):
     """
 
     variant: Variant = "vehicle"
-    source: str | None = None
+    source: FilePath | None = None
     fmu: FmuTable = FmuTable()
-    tyre_file: str | None = None
+    tyre_file: FilePath | None = None
     quarter_car: QuarterCar = QuarterCar()
     body: Body = Body()
     tyre: Tyre = Tyre()
     driveline: Driveline = Driveline()
+
+    def __post_init__(self) -> None:
+        """Refuse a car of one's own that is not said where to find."""
+        if self.variant == "own" and self.source is None:
+            raise ValueError('`variant = "own"` needs the file of the car as `source`')
 
     @property
     def whole(self) -> WholeCar:
@@ -72,7 +77,7 @@ class Scenario(Table, frozen=True):
     end_distance_m: Positive | None = None
     start_speed_kmph: Annotated[float, Meta(ge=0.0, le=200.0)] = 0.0
     vehicle: VehicleTable = VehicleTable()
-    road_file: str | None = None
+    road_file: FilePath | None = None
     road: Annotated[tuple[Patch, ...], Meta(min_length=1)] = (Patch(mu=1.0),)
     sensors: Sensors = Sensors()
     bus: BusTiming = BusTiming()
@@ -132,6 +137,9 @@ def load_scenario(name_or_path: str | Path, folder: Path = Path()) -> Scenario:
         scenario = msgspec.structs.replace(scenario, vehicle=vehicle)
     if scenario.vehicle.source is not None:
         source = str((path.parent / scenario.vehicle.source).absolute())
+        if not _file_of_car(source).is_file():
+            what = "is no .fmu and no file.py:Class that exists"
+            raise ConfigError(f"{path}: vehicle.source: {source} {what}")
         vehicle = msgspec.structs.replace(scenario.vehicle, source=source)
         scenario = msgspec.structs.replace(scenario, vehicle=vehicle)
     if scenario.road_file is not None:
@@ -153,8 +161,15 @@ def _find(name_or_path: str | Path, folder: Path) -> Path:
     if path.suffix == ".toml" or len(path.parts) > 1:
         return folder / path
     shipped = {path.stem: path for path in LIBRARY.glob("*/*.toml")}
-    if path.name not in shipped:
-        name = path.name[:100]
+    if str(path) not in shipped:
+        name = str(name_or_path)[:100]
         hint = offer(name, shipped) or "; `plant-emulator list` names those"
-        raise ConfigError(f"scenario {name!r} is neither a file nor one that is shipped{hint}")
-    return shipped[path.name]
+        raise ConfigError(
+            f"scenario {name!r} is neither a .toml file nor one that is shipped{hint}"
+        )
+    return shipped[str(path)]
+
+
+def _file_of_car(source: str) -> Path:
+    """The file that ``source`` of ``[vehicle]`` names: ``car.fmu``, or ``car.py`` of a class."""
+    return Path(source if source.endswith(".fmu") else source.rpartition(":")[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
 import msgspec
 from msgspec import inspect
@@ -13,6 +13,9 @@ from msgspec import inspect
 from tcs_hil.errors import ConfigError, offer
 
 T = TypeVar("T")
+
+FilePath = Annotated[str, msgspec.Meta(pattern=r"^[^\0]+$")]
+"""A path that a file may have; relative ones are relative to the file that names it."""
 
 WORDS = {
     "Object contains unknown field": "unknown key",

@@ -10,7 +10,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from tcs_hil.canbus.mapping.settings import SignalMap
-from tcs_hil.config import read_toml
+from tcs_hil.config import FilePath, read_toml
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.realtime import FIFO_PRIORITY
@@ -27,7 +27,7 @@ class BusSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     interface: str = "auto"
     channel: str = "vcan0"
     bitrate: Annotated[int, Meta(gt=0, le=1_000_000)] | None = None
-    database: str | None = None
+    database: FilePath | None = None
 
 
 class TickSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -49,7 +49,7 @@ class TickSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 class RecorderSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Flight recording: none without a path; the newest ``ticks`` are kept."""
 
-    path: str | None = None
+    path: FilePath | None = None
     ticks: Annotated[int, Meta(ge=1, le=10_000_000)] = 100_000
 
 
@@ -60,7 +60,7 @@ class ServiceConfig(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     """
 
     controller: ControllerName = "kmpc"
-    model: str | None = None
+    model: FilePath | None = None
     bus: BusSettings = BusSettings()
     tick: TickSettings = TickSettings()
     recorder: RecorderSettings = RecorderSettings()

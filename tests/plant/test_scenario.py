@@ -53,12 +53,12 @@ def test_an_unknown_name_is_refused_by_name():
 
 def test_a_road_file_no_file_can_be_is_refused(tmp_path):
     text = MINIMAL.replace("[driver]", 'road_file = "a\\u0000b.csv"\n[driver]')
-    assert "null byte" in refusal(tmp_path, text)
+    assert "road_file" in refusal(tmp_path, text)
 
 
 @pytest.mark.parametrize("name", ["*", "**", "manoeuvre-?", "[m]anoeuvre-1", "x" * 5000, ""])
 def test_a_name_is_no_pattern(name):
-    with pytest.raises(ConfigError, match="neither a file nor one that is shipped"):
+    with pytest.raises(ConfigError, match=r"neither a \.toml file nor one that is shipped"):
         load_scenario(name)
 
 
@@ -88,7 +88,7 @@ def test_a_missing_file_is_refused(tmp_path):
         ("[vehicle.body]\nmass_kg = nan\n", "mass_kg"),
         ("[vehicle.tyre]\nphx1 = -inf\n", "phx1"),
         ("[sensors]\naccel_bias_mps2 = 1e300\n", "accel_bias_mps2"),
-        ('[vehicle]\ntyre_file = "a\\u0000b.tir"\n', "null byte"),
+        ('[vehicle]\ntyre_file = "a\\u0000b.tir"\n', "vehicle.tyre_file"),
         (GARBAGE + "low = 2.0\nhigh = 1.0\n", "low"),
         (GARBAGE + "high = inf\n", "high"),
         (GARBAGE + "low = nan\n", "low"),

@@ -56,8 +56,11 @@ def _read_truth(path: Path) -> tuple[NDArray[np.void], NDArray[np.int64], str]:
     try:
         with path.open("rb") as file, np.load(file) as recording:
             return recording["truth"], recording["jitter_ns"], str(recording["scenario"])
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise ConfigError(f"{path}: no truth of the plant ({error})") from error
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read ({error.strerror})") from error
+    except (ValueError, KeyError, zipfile.BadZipFile) as error:
+        # What numpy says to that is how to trust a file with any code in it.
+        raise ConfigError(f"{path}: no truth of the plant, as the emulator records it") from error
 
 
 def _tables(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from msgspec import structs, to_builtins
 
@@ -12,6 +13,7 @@ from plant_emulator.scenario import Scenario
 from tcs_hil.config import convert
 from tcs_hil.control.settings import PresetName
 from tcs_hil.errors import ConfigError
+from tcs_hil.hil.judging.channels import namespace
 from tcs_hil.hil.judging.checks import prepare
 from tcs_hil.hil.judging.evidence import Evidence
 from tcs_hil.hil.judging.verdict import Finding, judge
@@ -84,10 +86,15 @@ def check_cases(cases: Sequence[Case]) -> None:
     """Refuse what could not be judged or told apart, before anything is driven.
 
     Raises:
-        ConfigError: an expectation names what does not exist, or two cases have one
-            name; the scenario is named.
+        DatabaseError: the DBC cannot be read.
+        ConfigError: there is no such model file, an expectation names what does not
+            exist, or two cases have one name; the culprit is named.
     """
+    for model in {case.config.model for case in cases} - {None}:
+        if not Path(str(model)).is_file():
+            raise ConfigError(f"{model}: there is no such model file")
     for case in cases:
+        namespace(case.config.bus.database)
         for place, expect in enumerate(case.scenario.expect):  # counted as in every TOML error
             try:
                 prepare(expect, case.config.bus.database)

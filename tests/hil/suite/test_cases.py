@@ -10,10 +10,10 @@ from msgspec import structs
 
 from plant_emulator.expect import Expect
 from plant_emulator.scenario import list_scenarios
-from tcs_hil.errors import ConfigError
+from tcs_hil.errors import ConfigError, TcsError
 from tcs_hil.hil.suite.case import Case, check_cases, judge_expectations, with_law
 from tcs_hil.hil.suite.library import scenario_case, suite_cases, suite_names
-from tcs_hil.service.settings import ServiceConfig
+from tcs_hil.service.settings import BusSettings, ServiceConfig
 
 CONFIG = ServiceConfig()
 
@@ -59,6 +59,18 @@ def test_a_limit_on_what_does_not_exist_is_refused_with_scenario_and_place() -> 
     )
     with pytest.raises(ConfigError, match=r"^mine: expect\[1\]: there is no signal"):
         check_cases([Case("own", "mine", scenario, CONFIG)])
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        structs.replace(CONFIG, model="nowhere.npz"),
+        structs.replace(CONFIG, bus=BusSettings(database="nowhere.dbc")),
+    ],
+)
+def test_a_file_of_the_service_that_is_not_there_is_refused(config: ServiceConfig) -> None:
+    with pytest.raises(TcsError, match=r"^nowhere\."):
+        check_cases([Case("own", "mine", LAUNCH, config)])
 
 
 def test_two_scenarios_of_one_name_are_refused(tmp_path: Path) -> None:

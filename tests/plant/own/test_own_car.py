@@ -89,11 +89,13 @@ def test_parameters_are_set_before_the_start(scenario, tmp_path):
     [
         ('source = "car.fmu"\n[vehicle.fmu]\nnames = { speed_mps = "v" }', "no real variable v"),
         ('source = "car.fmu"\n[vehicle.fmu]\nstart = { colour = 1.0 }', "no real variable colour"),
-        ('source = "nowhere.fmu"', "nowhere.fmu: cannot be read as an FMU"),
+        ('source = "nowhere.fmu"', "nowhere.fmu is no .fmu and no file.py:Class that exists"),
         ('source = "own.toml:Car"', "own.toml: cannot be run"),
         (f'source = "{HERE / "brick.py"}:Stone"', "brick.py: has no Stone"),
-        ('source = "nowhere.py:Car"', "no file.py:Class that exists"),
-        ("", "needs `source`"),
+        ('source = "nowhere.py:Car"', "nowhere.py:Car is no .fmu and no file.py:Class"),
+        (f'source = "{HERE / "brick.py"}"', "brick.py is no .fmu and no file.py:Class"),
+        (f'source = "{HERE / "brick.py"}:truth"', "cannot be made of a scenario"),
+        ("", "needs the file of the car as `source`"),
     ],
 )
 def test_a_car_that_cannot_be_had_is_refused_in_one_sentence(vehicle, named, scenario, tmp_path):

@@ -11,7 +11,7 @@ import msgspec
 from rich.console import Console
 from rich.markdown import Markdown
 
-from tcs_hil.cli.options import json_option, refuse
+from tcs_hil.cli.options import check_folder, json_option, refuse
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.errors import ConfigError, offer
 from tcs_hil.hil.bench.effort import FULL, QUICK
@@ -45,6 +45,7 @@ def command(
     effort = QUICK if quick else FULL
     if seconds is not None:
         effort = effort._replace(bus_s=seconds)
+    check_folder(write)
     parts = _parts(only)
     if "bus" not in parts:
         refuse(

@@ -10,7 +10,7 @@ from typing import Any, get_args
 import click
 import msgspec
 
-from tcs_hil.cli.options import BUS_OPTIONS, bus_options, json_option, refuse
+from tcs_hil.cli.options import BUS_OPTIONS, bus_options, check_folder, json_option, refuse
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.cli.verdicts import show
 from tcs_hil.errors import ConfigError
@@ -150,6 +150,7 @@ def _controllers(names: str | None) -> list[ControllerName | None]:
 def _outputs(options: dict[str, Any]) -> Outputs:
     """Everything that could be refused is refused before the first run."""
     folder, baseline = options["out"], options["baseline"]
+    check_folder(options["junit"])
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -9,11 +9,10 @@ import click
 from msgspec.structs import replace
 
 from tcs_hil.cli.identified import show_bank, show_predictor, show_refined
-from tcs_hil.cli.options import json_option, refuse
+from tcs_hil.cli.options import check_folder, json_option, refuse
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import read_toml
 from tcs_hil.control.settings import ControlSettings
-from tcs_hil.errors import ConfigError
 from tcs_hil.hil.drives import read_drive
 from tcs_hil.model.bank import KoopmanBank, default_bank_path
 from tcs_hil.model.bank_evaluation import simulated_errors
@@ -72,8 +71,8 @@ def command(preset: str, output: Path, as_json: bool, **options: Any) -> None:
 
     Example: tcs-hil identify --preset default --from drive.blf --output model.npz
     """
-    if not output.absolute().parent.is_dir():
-        raise ConfigError(f"{output}: there is no such folder to write the model file into")
+    check_folder(output)
+    check_folder(options["figure"])
     identification = {"paper": _paper, "default": _default}[preset]
     if preset == "default" and options["recordings"]:
         identification = _recorded

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -43,3 +44,13 @@ def refuse(options: Mapping[str, Any], names: Iterable[str], why: str) -> None:
         value = options[name]
         if not (value is None or value is False or value == ()):  # 0 was said, too
             raise ConfigError(f"--{name.replace('_', '-')}: has no effect here; {why}")
+
+
+def check_folder(path: Path | None) -> None:
+    """Refuse a file that could not be written once all the work is done.
+
+    Raises:
+        ConfigError: there is no folder for it; the file is named.
+    """
+    if path is not None and not path.absolute().parent.is_dir():
+        raise ConfigError(f"{path}: there is no such folder to write into")

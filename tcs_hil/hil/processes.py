@@ -31,7 +31,7 @@ class ProcessError(TcsError):
 def fork_server() -> ForkServerContext:
     """The context of processes that start with everything loaded."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["tcs_hil.hil.warm"])
+    context.set_forkserver_preload(["tcs_hil.hil.uninterrupted", "tcs_hil.hil.warm"])
     return context
 
 

@@ -75,6 +75,7 @@ def test_junit_is_written_where_it_is_wanted(hil, tmp_path: Path) -> None:
         (["--suite", "lunch"], "no suite 'lunch'"),
         (["--controller", "kpmc"], "--controller kpmc: the laws are off, pi, kmpc, nmpc"),
         (["--baseline", "nowhere"], "nowhere/results.json"),
+        (["--junit", "nowhere/j.xml"], "nowhere/j.xml: there is no such folder"),
         (["no-such-scenario"], "'no-such-scenario' is neither"),
         (["--channel", "can0", "-j", "2", "--mode", "lockstep"], "one after another"),
         (["--channel", "can77", "--mode", "lockstep"], "there is no CAN interface can77"),

@@ -4,12 +4,13 @@ import signal
 import subprocess
 import sys
 import textwrap
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
-from tcs_hil.hil.processes import ProcessError, program
+from tcs_hil.hil.processes import ProcessError, fork_server, program
 
 PATIENCE_S = 20.0
 
@@ -38,6 +39,11 @@ def wait_until_dead(pid: int) -> None:
         ended, _, _ = select.select([process], [], [], PATIENCE_S)
         os.close(process)
         assert ended, f"process {pid} lives on"
+
+
+def test_what_the_bench_forks_off_leaves_ctrl_c_to_it() -> None:
+    with ProcessPoolExecutor(1, mp_context=fork_server()) as pool:
+        assert pool.submit(signal.getsignal, signal.SIGINT).result() is signal.SIG_IGN
 
 
 def test_a_program_is_ready_when_it_says_so_and_stops_when_asked(script, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import active_children
 from pathlib import Path
@@ -19,7 +20,7 @@ from tcs_hil.hil.judging.evidence import Evidence
 from tcs_hil.hil.judging.measured import CannotJudgeError
 from tcs_hil.hil.judging.of_run import RUN_METRICS, Stretch, stretch
 from tcs_hil.hil.judging.verdict import Finding, Verdict, overall
-from tcs_hil.hil.processes import fork_server
+from tcs_hil.hil.processes import ProcessError, fork_server
 from tcs_hil.hil.report import picture
 from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.hil.suite.case import Case
@@ -79,6 +80,9 @@ def run_cases(cases: Sequence[Case], bench: Bench, jobs: int, progress: Progress
     """Drive every case, ``jobs`` at a time; results are in the order of ``cases``.
 
     ``progress`` hears of the share done and the case that was last finished.
+
+    Raises:
+        ProcessError: a worker was killed.
     """
     pool = ProcessPoolExecutor(jobs, mp_context=fork_server())
     try:
@@ -87,6 +91,8 @@ def run_cases(cases: Sequence[Case], bench: Bench, jobs: int, progress: Progress
             result = task.result()
             progress(done / len(tasks), f"{result.name} {result.verdict}")
         return [task.result() for task in tasks]
+    except BrokenProcessPool as error:
+        raise ProcessError("a worker was killed, perhaps for want of memory: try -j 1") from error
     except KeyboardInterrupt:
         for worker in active_children():  # their programs end with them
             worker.terminate()

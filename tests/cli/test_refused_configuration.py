@@ -101,10 +101,10 @@ def test_a_choice_that_is_none_is_refused(
 
 
 @pytest.mark.parametrize("key", ["model", "bus.database", "recorder.path"])
-def test_a_path_no_file_can_have_is_refused(refused: Refused, tmp_path: Path, key: str) -> None:
+def test_a_path_no_file_can_have_is_refused(refused: TcsHil, tmp_path: Path, key: str) -> None:
     path = tmp_path / "service.toml"
     path.write_text(f'{key} = "a\\u0000b"')
-    assert is_one_sentence_about(refused("--config", str(path)), str(path), key)
+    assert refused("--config", str(path)).is_one_sentence_about(str(path), key)
 
 
 @pytest.mark.parametrize("damage", CORRUPTIONS)

@@ -195,7 +195,7 @@ def test_any_number_goes_out_as_a_torque_or_as_no_limit(limit_nm: float, said_nm
 
 def test_the_believed_car_sets_radius_gear_and_full_torque() -> None:
     config = tomllib.loads(QUENDAL.toml.read_text()) | {"vehicle": {"wheel_radius_m": 0.636}}
-    node = bus_end(convert(config, ServiceConfig, "test")).node
+    node = bus_end(convert(config, ServiceConfig, "test").beside(QUENDAL.toml.parent)).node
     live(node, QUENDAL)
     half = Vehicle().wheel_radius_m / 0.636
     assert node.measurement(0).wheel_speed_radps[0] == pytest.approx(20.0 * half, abs=0.01)

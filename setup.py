@@ -17,7 +17,7 @@ TICK = {
     "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
     " vehicle_node watch",
     "tcs_hil/canbus/mapping": "node",
-    "tcs_hil/control": "break_away compensated fallback force_disturbance guarded integrator pi"
+    "tcs_hil/control": "break_away compensated entry fallback force_disturbance guarded integrator pi"
     " screening sent speed_disturbance",
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused loop_delay side",
     "tcs_hil/plausibility": "driven rolling screen trace",

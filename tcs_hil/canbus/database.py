@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.resources
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import cast
 
@@ -66,6 +67,16 @@ def load_database(path: Path | None = None) -> Database:
         DatabaseError: The file cannot be read, or lacks something the service
             needs; names the message and the signal.
     """
+    return _built_in() if path is None else _load(path)
+
+
+@cache
+def _built_in() -> Database:
+    """Read once, whoever asks: a bench drives many cars in one process."""
+    return _load(None)
+
+
+def _load(path: Path | None) -> Database:
     source, parsed = parse_dbc(path)
     try:
         messages = {contract.name: _message_spec(parsed, contract) for contract in CONTRACT}

@@ -11,6 +11,7 @@ from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.pi import PiController
 from tcs_hil.control.protocol import Controller
 from tcs_hil.control.settings import ControlSettings
+from tcs_hil.control.swing_guard import SwingGuard
 from tcs_hil.errors import ConfigError
 from tcs_hil.model.bank import KoopmanBank, slippery_bank_path
 
@@ -28,8 +29,9 @@ def bank_mpc(settings: ControlSettings, bank: KoopmanBank) -> Controller:
     )
     vehicle = bank.provenance.settings.vehicle
     break_away = BreakAway(settings.slip_reference, vehicle, settings.period_s)
+    guard = SwingGuard(settings.slip_reference, vehicle, settings.period_s)
     optimiser = _optimiser(settings, bank)
-    law = CompensatedController(optimiser, integral, settings.period_s, break_away)
+    law = CompensatedController(optimiser, integral, guard, settings.period_s, break_away)
     return GuardedController(law, PiController(settings), bank.validity, settings.period_s)
 
 

@@ -12,6 +12,7 @@ from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
 from tcs_hil.control.screening import clamp, settled
 from tcs_hil.control.sent import SentTorques
+from tcs_hil.control.swing_guard import SwingGuard
 
 
 class DelayedOptimiser(Protocol):
@@ -48,12 +49,14 @@ class CompensatedController:
     the torques already sent.  With an ``entry`` the driver decides until it is
     passed, and again once the law has given all torque back.  ``break_away``
     bounds the torque of a law that cannot catch every wheel by itself.
+    While ``swing_guard`` holds, nobody decides: the torque is the ceiling.
     """
 
     def __init__(
         self,
         optimiser: DelayedOptimiser,
         integral: BoundedIntegral,
+        swing_guard: SwingGuard,
         period_s: float,
         break_away: BreakAway | None = None,
         entry: Entry | None = None,
@@ -61,6 +64,7 @@ class CompensatedController:
         self._optimiser = optimiser
         self._integral = integral
         self._break_away = break_away
+        self._swing_guard = swing_guard
         self._period_s = period_s
         self._entry = entry
         self._awake = False
@@ -76,6 +80,7 @@ class CompensatedController:
         """Forget everything, as at start-up."""
         self._integral.reset()
         self._optimiser.reset()
+        self._swing_guard.reset()
         if self._break_away:
             self._break_away.reset()
         self._sent.reset()
@@ -90,13 +95,16 @@ class CompensatedController:
             self._optimiser.reset()  # what failed is no warm start
             return Proposal(torque_ref_nm, plan.status, plan.iterations)
         torque_nm = self._entered(wheel, clamp(plan.inputs.item(0), ceiling_nm), ceiling_nm)
+        torque_nm = ceiling_nm if self._swing_guard.holds else torque_nm
         self._integral.advance(wheel.slip_ratio, torque_nm, ceiling_nm)
         return Proposal(torque_nm, plan.status, plan.iterations, plan.next_nm)
 
     def _ceiling_nm(self, wheel: WheelState, torque_ref_nm: float) -> float:
+        sent_nm = self._sent.newest_nm
+        ceiling_nm = self._swing_guard.ceiling_nm(wheel, torque_ref_nm, sent_nm)
         if self._break_away is None:
-            return torque_ref_nm
-        return self._break_away.ceiling_nm(wheel, torque_ref_nm, self._sent.newest_nm)
+            return ceiling_nm
+        return min(ceiling_nm, self._break_away.ceiling_nm(wheel, torque_ref_nm, sent_nm))
 
     def _entered(self, wheel: WheelState, torque_nm: float, ceiling_nm: float) -> float:
         """``torque_nm`` from the entry on until all is given back, else ``ceiling_nm``."""

@@ -13,6 +13,7 @@ from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
+from tcs_hil.control.swing_guard import SwingGuard
 from tcs_hil.model.vehicle import Vehicle
 
 SLOWEST_MPS = 0.2
@@ -91,6 +92,7 @@ def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedCon
         BoundedIntegral(
             settings.slip_reference, settings.period_s, settings.default.integral_limit_s
         ),
+        SwingGuard(settings.slip_reference, vehicle, settings.period_s),
         settings.period_s,
         entry=Entry(tuning.entry_ratio * settings.slip_reference, tuning.entry_slip_mps),
     )

@@ -13,6 +13,7 @@ from tcs_hil.control.entry import Entry
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
+from tcs_hil.control.swing_guard import SwingGuard
 from tcs_hil.model.vehicle import Vehicle
 from tests.control.recorder import wheel_at
 
@@ -46,7 +47,8 @@ class Scripted:
 
 def control(optimiser: Scripted, entry: Entry | None = None) -> CompensatedController:
     integral = BoundedIntegral(0.1, 0.002, 0.02)
-    return CompensatedController(optimiser, integral, 0.002, entry=entry)
+    guard = SwingGuard(0.1, Vehicle(), 0.002)
+    return CompensatedController(optimiser, integral, guard, 0.002, entry=entry)
 
 
 def test_it_plans_from_the_state_behind_the_torques_under_way() -> None:
@@ -120,7 +122,17 @@ def test_a_slip_ratio_made_of_a_slow_wheels_noise_is_no_entry() -> None:
 def test_a_wheel_that_breaks_away_is_planned_for_under_its_ceiling() -> None:
     optimiser = Scripted(80.0, 200.0)
     integral, break_away = BoundedIntegral(0.1, 0.002, 0.02), BreakAway(0.1, Vehicle(), 0.002)
-    controller = CompensatedController(optimiser, integral, 0.002, break_away)
+    guard = SwingGuard(0.1, Vehicle(), 0.002)
+    controller = CompensatedController(optimiser, integral, guard, 0.002, break_away)
     controller.step(wheel_at(2.0, 0.05), 200.0)
     controller.step(wheel_at(2.0, 0.4), 200.0)
     assert optimiser.asked[1][2] == 0.7 * 80.0
+
+
+def test_a_law_that_swings_is_taken_out_of_the_loop_for_a_while() -> None:
+    torques_nm = [140.0 if tick // 25 % 2 else 60.0 for tick in range(300)]
+    controller = control(Scripted(*torques_nm))
+    blind = replace(wheel_at(5.0, 0.05), motor_torque_nm=np.nan)
+    sent_nm = [controller.step(blind, 200.0).torque_nm for _ in torques_nm]
+    assert max(abs(np.diff(sent_nm[:100]))) == 80.0
+    assert min(np.ptp(sent_nm[start : start + 50]) for start in range(100, 250)) < 40.0

@@ -1,0 +1,130 @@
+"""What ends a limit cycle while it begins: torque held at the swing's mean, then given back."""
+
+from __future__ import annotations
+
+import math
+
+from tcs_hil.control.protocol import WheelState
+from tcs_hil.control.swings import SwingMean, Swings
+from tcs_hil.model.vehicle import Vehicle
+
+LEAST_SLIP_RATIO = 0.05
+LEAST_SLIP_MPS = 0.06
+LEAST_NM = 20.0
+FED_NM = 10.0
+"""A swing of slip is beyond both of the first, one of torque beyond the third; a torque that moves
+by the last feeds the slip's swings, or at least answers them."""
+TURNS = 3
+"""So many turns in a row are a limit cycle that begins."""
+
+MEAN_SHARE = 0.95
+CARRIED_SHARE = 0.9
+LEAST_SHARE = 0.6
+"""What is held: of the torque's mean, of what a sliding tyre carries, and at least of the mean."""
+SLIDING_SHARE = 2.0
+LOST_SHARE = 4.0
+"""Beyond so many slip references a held wheel slides, and is left to the law."""
+
+SETTLING_S = 0.05
+FORCE_S = 0.05
+HOLD_S = 0.3
+LONGEST_HOLD_S = 2.0
+LONGER = 1.3
+CALM_S = 2.0
+"""A hold is so much longer than the last one, unless so much time has passed since."""
+GROWTH_S = 0.4
+
+
+class SwingGuard:
+    """Takes the torque out of feedback where the loop begins to swing.
+
+    Below what the tyre carries, wheel and driveline are stable by themselves:
+    what they keep up, the loop feeds.  So after a few swings the torque is held,
+    a little below its own mean, until they have died away, and then bounded by a
+    ceiling that grows until it binds no more.  If the loop swings again, it is
+    held for longer.
+    """
+
+    def __init__(self, slip_reference: float, vehicle: Vehicle, period_s: float) -> None:
+        self._slip_reference = slip_reference
+        self._arm_m = vehicle.wheel_radius_m / vehicle.gear_ratio
+        self._period_s = period_s
+        self._force_gain = 1.0 - math.exp(-period_s / FORCE_S)
+        self._settling = 1.0 - math.exp(-period_s / SETTLING_S)
+        self._growth = math.exp(period_s / GROWTH_S)
+        self._slip, self._torque, self._fed = (Swings(period_s) for _ in range(3))
+        self._mean = SwingMean()
+        self.reset()
+
+    def reset(self) -> None:
+        """Nothing swings."""
+        self._forget_swings()
+        self._force_n = 0.0
+        self._asked_nm = 0.0  # by the driver, a tick ago
+        self._level_nm = self._least_nm = 0.0  # what the ceiling settles at while it is held
+        self._ceiling_nm = math.inf
+        self._left_s = 0.0  # of the hold
+        self._hold_s = HOLD_S
+        self._calm_s = math.inf  # since the last hold began
+
+    @property
+    def holds(self) -> bool:
+        """Whether the ceiling is the torque to send, whatever the law says."""
+        return self._left_s > 0.0
+
+    def ceiling_nm(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> float:
+        """Most torque in [0, torque_ref_nm] that may follow ``sent_nm``; called once a tick."""
+        self._observe(wheel, torque_ref_nm, sent_nm)
+        if self.holds:
+            self._hold(wheel)
+        elif self._swings():
+            self._begin(sent_nm)
+        else:
+            grown_nm = self._growth * self._ceiling_nm
+            self._ceiling_nm = grown_nm if grown_nm < torque_ref_nm else math.inf
+        return min(self._ceiling_nm, torque_ref_nm)
+
+    def _observe(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> None:
+        self._calm_s += self._period_s
+        if math.isfinite(wheel.tyre_force_n):
+            self._force_n += self._force_gain * (wheel.tyre_force_n - self._force_n)
+        if self.holds or torque_ref_nm < self._asked_nm:
+            self._forget_swings()  # what the driver takes back is no fault of the loop
+        else:
+            self._count(wheel, sent_nm)
+        self._asked_nm = torque_ref_nm
+
+    def _count(self, wheel: WheelState, sent_nm: float) -> None:
+        known = math.isfinite(wheel.motor_torque_nm)
+        torque_nm = wheel.motor_torque_nm if known else sent_nm
+        speed_mps = max(wheel.vehicle_speed_mps, LEAST_SLIP_MPS)
+        self._slip.update(wheel.slip_ratio, max(LEAST_SLIP_RATIO, LEAST_SLIP_MPS / speed_mps))
+        self._torque.update(torque_nm, LEAST_NM)
+        self._mean.add(sent_nm, turned=self._fed.update(torque_nm, FED_NM))
+
+    def _swings(self) -> bool:
+        fed = self._slip.turns >= TURNS and self._fed.turns >= TURNS - 1
+        return fed or self._torque.turns >= TURNS
+
+    def _begin(self, sent_nm: float) -> None:
+        again = self._calm_s < CALM_S
+        self._hold_s = min(LONGER * self._hold_s, LONGEST_HOLD_S) if again else HOLD_S
+        self._left_s, self._calm_s = self._hold_s, 0.0
+        self._level_nm = min(MEAN_SHARE * self._mean.value, self._ceiling_nm)
+        self._least_nm = LEAST_SHARE * self._level_nm
+        self._ceiling_nm = max(self._level_nm, min(sent_nm, self._ceiling_nm))
+
+    def _hold(self, wheel: WheelState) -> None:
+        """Settle gently: near standstill a step of torque makes the tyre swing by itself."""
+        self._left_s -= self._period_s
+        if wheel.slip_ratio > SLIDING_SHARE * self._slip_reference:
+            carried_nm = CARRIED_SHARE * self._force_n * self._arm_m
+            self._level_nm = min(self._level_nm, max(carried_nm, self._least_nm))
+        if wheel.slip_ratio > LOST_SHARE * self._slip_reference:
+            self._left_s = 0.0
+        self._ceiling_nm += self._settling * (self._level_nm - self._ceiling_nm)
+
+    def _forget_swings(self) -> None:
+        for counter in (self._slip, self._torque, self._fed):
+            counter.reset()
+        self._mean.reset()

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Literal
 
 import click
 import msgspec
@@ -25,7 +26,7 @@ from tcs_hil.native import tick_is_compiled
 from tcs_hil.service.settings import ServiceConfig
 
 SCENARIO = "manoeuvre-1"
-VARIANTS = ("quarter-car", "vehicle")
+VARIANTS: tuple[Literal["quarter-car", "vehicle"], ...] = ("quarter-car", "vehicle")
 REPEATS = 5
 
 

@@ -110,7 +110,8 @@ class SwingGuard:
         again = self._calm_s < CALM_S
         self._hold_s = min(LONGER * self._hold_s, LONGEST_HOLD_S) if again else HOLD_S
         self._left_s, self._calm_s = self._hold_s, 0.0
-        self._level_nm = min(MEAN_SHARE * self._mean.value, self._ceiling_nm)
+        mean_nm = min(MEAN_SHARE * self._mean.value, self._ceiling_nm)
+        self._level_nm = max(mean_nm, CARRIED_SHARE * self._force_n * self._arm_m)
         self._least_nm = LEAST_SHARE * self._level_nm
         self._ceiling_nm = max(self._level_nm, min(sent_nm, self._ceiling_nm))
 

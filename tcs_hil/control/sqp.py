@@ -28,12 +28,19 @@ STEP_LENGTHS = tuple(0.5**k for k in range(16))
 class LeastSquares(Protocol):
     """A sum of squares with its Gauss-Newton model at the last plan asked for."""
 
+    plan: FloatArray  # (N,)
     gradient: FloatArray  # (N,)
     hessian: FloatArray  # (N, N), positive definite
 
     def at(self, plan: FloatArray) -> float:
         """Cost of a plan (N,)."""
         ...
+
+
+def expected(problem: LeastSquares, ceiling_nm: float) -> FloatArray:
+    """Where the model has its minimum (N,) within 0 to ceiling_nm; zero if it has none."""
+    step = _box_step(problem, problem.plan, ceiling_nm)
+    return np.zeros_like(problem.plan) if step is None else problem.plan + step
 
 
 def minimise(
@@ -45,7 +52,7 @@ def minimise(
         step = _box_step(problem, plan, ceiling_nm) if math.isfinite(cost) else None
         if step is None:
             return Plan(plan, SolveStatus.FAILED, iteration)
-        if max(step.max(), -step.min()) <= STEP_TOLERANCE_NM:
+        if max(map(abs, step.tolist())) <= STEP_TOLERANCE_NM:
             return Plan(plan + step, SolveStatus.OK, iteration)
         plan, cost = _search(problem, plan, cost, step)
     return Plan(plan, SolveStatus.MAX_ITERATIONS, max_iterations)

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 from tcs_hil.control.integrator import SlipErrorIntegral
+from tcs_hil.control.least_squares import Tracked
 from tcs_hil.control.nmpc import NonlinearOptimiser
 from tcs_hil.control.predictive import PredictiveController
 from tcs_hil.control.protocol import SolveStatus
 from tcs_hil.control.settings import ControlSettings
+from tcs_hil.control.transcription import gauss_newton_function
 from tcs_hil.model.vehicle import Vehicle
 from tests.control import quarter_car
 from tests.control.quarter_car import PERIOD_S, drive
@@ -21,7 +23,7 @@ from tests.control.recorder import Recorder, wheel_at
 
 HORIZON, SUBSTEPS, REFERENCE = 5, 4, 0.1
 W_P, W_I, W_U = 1e3, 1e5, 1.6e-7
-AGREEMENT_NM = 1e-3
+AGREEMENT_NM = 1e-5
 
 Solve = Callable[[tuple[float, float, float], float], np.ndarray]
 
@@ -130,6 +132,31 @@ def test_from_any_state_the_first_torque_is_the_one_ipopt_converges_to(ipopt: So
         plan = optimiser.plan(wheel, integral_s, torque_ref_nm)
         x0 = (wheel.slip_speed_mps, wheel.wheel_speed_radps, integral_s)
         assert abs(plan.inputs[0] - ipopt(x0, torque_ref_nm)[0]) < 1e-2
+
+
+def test_a_step_of_the_measured_speed_costs_one_linearisation() -> None:
+    """The first torque answers one bit of the wheel speed by more than 1 Nm."""
+    optimiser = NonlinearOptimiser(ControlSettings(), Vehicle())
+    before = optimiser.plan(wheel_at(5.0, 0.1), 0.0, 200.0)
+    after = optimiser.plan(wheel_at(5.0, 0.1004), 0.0, 200.0)
+    assert abs(after.inputs[0] - before.inputs[0]) > 1.0
+    assert before.iterations > after.iterations == 1
+
+
+def test_the_gradient_follows_state_and_request_to_first_order() -> None:
+    """At the reference and with all the torque asked for, Gauss-Newton leaves nothing out."""
+    wheel, plan = wheel_at(5.0, 0.1), np.full(HORIZON, 135.3)
+    given = np.array([wheel.slip_speed_mps, wheel.wheel_speed_radps, 0.0, plan[0]])
+    change = np.array([1e-5, -2e-5, 3e-6, 2e-2])
+    problem = Tracked(gauss_newton_function(ControlSettings(), Vehicle()))
+    problem.start_from(given[:3], given[3])
+    problem.at(plan)
+    still = problem.gradient.copy()
+    problem.start_from((given + change)[:3], (given + change)[3])
+    followed = problem.gradient.copy()
+    problem.at(plan)
+    moved = np.abs(problem.gradient - still).min()
+    assert np.abs(followed - problem.gradient).max() < 1e-2 * moved
 
 
 def test_the_result_does_not_depend_on_the_warm_start() -> None:

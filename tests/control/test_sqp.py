@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tcs_hil.control.protocol import SolveStatus
-from tcs_hil.control.sqp import minimise
+from tcs_hil.control.sqp import expected, minimise
 
 
 class Arctangents:
@@ -16,10 +16,12 @@ class Arctangents:
 
     def __init__(self, target: list[float]) -> None:
         self._target = np.array(target)
+        self.plan = np.zeros(2)
         self.evaluations = 0
 
     def at(self, plan: np.ndarray) -> float:
         self.evaluations += 1
+        self.plan = plan
         distance = (plan - self._target) / 10.0
         residual, slope = 100.0 * np.arctan(distance), 10.0 / (1.0 + distance**2)
         self.gradient = 2.0 * slope * residual
@@ -30,7 +32,7 @@ class Arctangents:
 class Undefined:
     """A cost that is not a number."""
 
-    gradient, hessian = np.zeros(2), np.eye(2)
+    plan, gradient, hessian = np.zeros(2), np.zeros(2), np.eye(2)
 
     def at(self, plan: np.ndarray) -> float:
         return math.nan
@@ -72,3 +74,14 @@ def test_running_out_of_iterations_is_a_status_with_a_plan_in_the_box() -> None:
 @pytest.mark.parametrize("problem", [Undefined(), Concave()])
 def test_a_problem_that_cannot_be_solved_is_a_status(problem: Undefined) -> None:
     assert minimise(problem, np.ones(2), 10.0, 20).status is SolveStatus.FAILED
+
+
+def test_what_the_model_expects_lies_in_the_box_and_asks_nothing_of_the_problem() -> None:
+    problem = Arctangents([30.0, 70.0])
+    problem.at(np.array([29.9, 69.9]))
+    np.testing.assert_allclose(expected(problem, 50.0), [30.0, 50.0], atol=1e-4)
+    assert problem.evaluations == 1
+
+
+def test_a_model_without_a_minimum_expects_no_torque() -> None:
+    np.testing.assert_array_equal(expected(Concave(), 10.0), [0.0, 0.0])

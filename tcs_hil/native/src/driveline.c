@@ -60,7 +60,7 @@ static void add_block(const driveline *law, const double *plan, int k, const sho
     add_residual(model, plan[k] - (k > 0 ? plan[k - 1] : law->last_torque_nm), row, before, k);
 }
 
-static double linearise(const void *problem, int n, const double *plan, double *gradient,
+static double linearise(void *problem, int n, const double *plan, double *gradient,
                         double *hessian) {
     const driveline *law = problem;
     gauss_newton model = {n, 0.0, gradient, hessian};

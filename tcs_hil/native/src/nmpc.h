@@ -6,7 +6,7 @@
 #include "sqp.h"
 #include "wheel_state.h"
 
-enum { WHEEL_NX = 3, WHEEL_PARAMETERS = 11, WHEEL_CONSTANTS = 4 };
+enum { WHEEL_NX = 3, GIVEN = WHEEL_NX + 1, WHEEL_PARAMETERS = 11, WHEEL_CONSTANTS = 4 };
 
 typedef struct {
     proposal *answer; /* where it is written */
@@ -15,16 +15,15 @@ typedef struct {
     double slip_gain, integral_gain;       /* Nm per unit slip and per second: the residuals' */
     double parameters[WHEEL_PARAMETERS];   /* of wheel_model.h */
     double constants[WHEEL_CONSTANTS];     /* folded from them */
-    double start[WHEEL_NX];                /* x_0 = [s, omega, e_int] */
-    double torque_ref_nm;
-    double before[BOX_QP_MAX];             /* the plan before the last one, which the solver has */
+    double given[GIVEN];                   /* [x_0, T_ref], x = [s, omega, e_int] */
+    double drift[BOX_QP_MAX][GIVEN];       /* (N, 4), the gradient's derivatives by them */
     sqp solver;
 } nmpc;
 
 /* Set up with integral, substeps, gains and parameters filled in. */
 void nmpc_setup(nmpc *law, int horizon, int max_iterations);
 
-/* Forget the integral and the last plans. */
+/* Forget the integral and the last model. */
 void nmpc_reset(nmpc *law);
 
 /* Decide for the coming period: see `proposal` and `outcome`. */

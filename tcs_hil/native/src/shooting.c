@@ -14,6 +14,11 @@ void shot_start(shot *state, const dynamics *model, const void *law, int derives
     memcpy(state->x, x, (size_t)model->nx * sizeof *x);
 }
 
+void shot_from_state(shot *state) {
+    for (int row = 0; row < state->model->nx; row++)
+        for (int j = 0; j < state->model->nx; j++) state->by_torque[row][j] = row == j;
+}
+
 void shot_torque(shot *state, int k) {
     for (int row = 0; row < state->model->nx; row++) state->by_torque[row][k] = 0.0;
     for (int j = 0; j <= k; j++) state->torque[j] = j == k;

@@ -44,6 +44,9 @@ typedef struct {
 /* Start from x (nx,). */
 void shot_start(shot *state, const dynamics *model, const void *law, int derives, const double *x);
 
+/* Derive by the state it starts from too, in the first nx columns. */
+void shot_from_state(shot *state);
+
 /* From here on the k-th torque acts; each in its turn. */
 void shot_torque(shot *state, int k);
 

@@ -18,6 +18,8 @@ void sqp_setup(sqp *solver, int n, int max_iterations) {
 void sqp_reset(sqp *solver) {
     const int n = solver->qp.n;
     memset(solver->plan, 0, sizeof solver->plan);
+    memset(solver->point, 0, sizeof solver->point);
+    memset(solver->gradient, 0, sizeof solver->gradient);
     memset(solver->qp.hessian, 0, sizeof solver->qp.hessian);
     for (int i = 0; i < n; i++) solver->qp.hessian[i * n + i] = 1.0;
     box_qp_reset(&solver->qp);
@@ -27,11 +29,21 @@ void sqp_reset(sqp *solver) {
 static int box_step(sqp *solver, double ceiling_nm) {
     double lower[BOX_QP_MAX], upper[BOX_QP_MAX];
     for (int i = 0; i < solver->qp.n; i++) {
-        lower[i] = -solver->plan[i];
-        upper[i] = ceiling_nm - solver->plan[i];
+        lower[i] = -solver->point[i];
+        upper[i] = ceiling_nm - solver->point[i];
     }
-    if (box_qp_refactor(&solver->qp) != SOLVE_OK) return SOLVE_FAILED;
     return box_qp_solve(&solver->qp, solver->gradient, lower, upper);
+}
+
+void sqp_expect(sqp *solver, double ceiling_nm) {
+    const int status = box_step(solver, ceiling_nm);
+    for (int i = 0; i < solver->qp.n; i++)
+        solver->plan[i] = status == SOLVE_OK ? solver->point[i] + solver->qp.x[i] : 0.0;
+}
+
+static double model_at_plan(sqp *solver, least_squares *model, void *problem) {
+    memcpy(solver->point, solver->plan, sizeof solver->point);
+    return model(problem, solver->qp.n, solver->plan, solver->gradient, solver->qp.hessian);
 }
 
 static double longest(int n, const double *step) {
@@ -48,27 +60,31 @@ static double inner(int n, const double *a, const double *b) {
 
 /* Go along the step until the cost falls enough (Armijo); the model follows the plan, unless it
    was the last step. */
-static double search(sqp *solver, least_squares *model, const void *problem, double cost) {
+static double search(sqp *solver, least_squares *model, void *problem, double cost) {
     const int n = solver->qp.n, is_last = solver->iterations == solver->max_iterations;
     const double slope = ARMIJO * inner(n, solver->gradient, solver->qp.x);
-    double *gradient = is_last ? 0 : solver->gradient, *hessian = is_last ? 0 : solver->qp.hessian;
     double start[BOX_QP_MAX], trial_cost = cost, length = 1.0;
     memcpy(start, solver->plan, sizeof start);
     for (int k = 0; k < HALVINGS; k++, length *= 0.5) {
         for (int i = 0; i < n; i++) solver->plan[i] = start[i] + length * solver->qp.x[i];
-        trial_cost = model(problem, n, solver->plan, gradient, hessian);
+        trial_cost = is_last ? model(problem, n, solver->plan, 0, 0)
+                             : model_at_plan(solver, model, problem);
         if (trial_cost <= cost + length * slope) break;
     }
     return trial_cost;
 }
 
-int sqp_minimise(sqp *solver, least_squares *model, const void *problem, double ceiling_nm) {
+static int solve_model(sqp *solver, double ceiling_nm) {
+    if (box_qp_refactor(&solver->qp) != SOLVE_OK) return SOLVE_FAILED;
+    return box_step(solver, ceiling_nm);
+}
+
+int sqp_minimise(sqp *solver, least_squares *model, void *problem, double ceiling_nm) {
     const int n = solver->qp.n;
-    double *hessian = solver->qp.hessian;
-    double cost = model(problem, n, solver->plan, solver->gradient, hessian);
+    double cost = model_at_plan(solver, model, problem);
     for (solver->iterations = 1; solver->iterations <= solver->max_iterations;
          solver->iterations++) {
-        if (!isfinite(cost) || box_step(solver, ceiling_nm) != SOLVE_OK) return SOLVE_FAILED;
+        if (!isfinite(cost) || solve_model(solver, ceiling_nm) != SOLVE_OK) return SOLVE_FAILED;
         if (longest(n, solver->qp.x) <= STEP_TOLERANCE_NM) {
             for (int i = 0; i < n; i++) solver->plan[i] += solver->qp.x[i];
             return SOLVE_OK;

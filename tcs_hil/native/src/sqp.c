@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A step this small is taken and ends the iteration. */
-static const double STEP_TOLERANCE_NM = 1e-3;
+/* A step this small is taken and ends the iteration: see tcs_hil/control/sqp.py. */
+static const double STEP_TOLERANCE_NM = 1.5e-3;
 static const double ARMIJO = 1e-4;
 enum { HALVINGS = 16 };
 

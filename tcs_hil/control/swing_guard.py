@@ -17,10 +17,14 @@ by the last feeds the slip's swings, or at least answers them."""
 TURNS = 3
 """So many turns in a row are a limit cycle that begins."""
 
+STAB_NMPS = 1500.0
+"""A driver who asks for more this fast, or for less, makes the wheel swing himself."""
+
 MEAN_SHARE = 0.95
 CARRIED_SHARE = 0.9
 LEAST_SHARE = 0.6
-"""What is held: of the torque's mean, of what a sliding tyre carries, and at least of the mean."""
+"""What is held: of the torque's mean, or of what the tyre carries if that is more; and what is left
+of it at least, whatever a sliding tyre carries."""
 SLIDING_SHARE = 2.0
 LOST_SHARE = 4.0
 """Beyond so many slip references a held wheel slides, and is left to the law."""
@@ -75,6 +79,8 @@ class SwingGuard:
     def ceiling_nm(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> float:
         """Most torque in [0, torque_ref_nm] that may follow ``sent_nm``; called once a tick."""
         self._observe(wheel, torque_ref_nm, sent_nm)
+        if torque_ref_nm <= self._ceiling_nm:
+            self._release()
         if self.holds:
             self._hold(wheel)
         elif self._swings():
@@ -86,10 +92,14 @@ class SwingGuard:
 
     def _observe(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> None:
         self._calm_s += self._period_s
-        if math.isfinite(wheel.tyre_force_n):
-            self._force_n += self._force_gain * (wheel.tyre_force_n - self._force_n)
-        if self.holds or torque_ref_nm < self._asked_nm:
-            self._forget_swings()  # what the driver takes back is no fault of the loop
+        surplus_n = wheel.tyre_force_n - self._force_n
+        slides = wheel.slip_ratio > self._slip_reference
+        if surplus_n > 0.0 or (slides and math.isfinite(surplus_n)):
+            # A tyre that slides tells what it carries; one that sticks, at least how much.
+            self._force_n += self._force_gain * surplus_n
+        stab_nm = self._period_s * STAB_NMPS
+        if self.holds or not 0.0 <= torque_ref_nm - self._asked_nm <= stab_nm:
+            self._forget_swings()  # what the driver sets swinging is no fault of the loop
         else:
             self._count(wheel, sent_nm)
         self._asked_nm = torque_ref_nm
@@ -120,10 +130,14 @@ class SwingGuard:
         self._left_s -= self._period_s
         if wheel.slip_ratio > SLIDING_SHARE * self._slip_reference:
             carried_nm = CARRIED_SHARE * self._force_n * self._arm_m
-            self._level_nm = min(self._level_nm, max(carried_nm, self._least_nm))
+            self._level_nm = max(carried_nm, self._least_nm)
         if wheel.slip_ratio > LOST_SHARE * self._slip_reference:
             self._left_s = 0.0
         self._ceiling_nm += self._settling * (self._level_nm - self._ceiling_nm)
+
+    def _release(self) -> None:
+        """The driver asks for no more than the ceiling allows: nothing is held."""
+        self._left_s, self._ceiling_nm = 0.0, math.inf
 
     def _forget_swings(self) -> None:
         for counter in (self._slip, self._torque, self._fed):

@@ -83,7 +83,7 @@ def test_without_two_limits_there_is_no_difference_in_nm() -> None:
 
 
 def test_the_recorded_law_is_the_one_its_service_named() -> None:
-    assert recorded_law(ticks(GOOD, GOOD), DATABASE) == "PI"
+    assert recorded_law(ticks(GOOD, GOOD), DATABASE) == "NMPC"
     assert recorded_law([], DATABASE) is None
 
 

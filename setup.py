@@ -28,7 +28,8 @@ TICK = {
 
 def compiled_tick():
     """Extensions of the tick's modules; a compiler that fails leaves them interpreted."""
-    if "editable_wheel" in sys.argv or os.environ.get("TCS_HIL_INTERPRETED"):
+    builds = {"bdist_wheel", "build_ext"} & set(sys.argv)  # metadata alone need no compiler
+    if not builds or os.environ.get("TCS_HIL_INTERPRETED"):
         return []
     from mypyc.build import mypycify  # noqa: PLC0415 - only where it is used
 

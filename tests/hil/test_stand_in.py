@@ -1,40 +1,40 @@
 """A law whose solver fails for 0.3 s of a launch on snow: the loop hardly notices."""
 
+from collections import Counter
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from plant_emulator.scenario import load_scenario
-from tcs_hil.control.protocol import Controller, Proposal, SolveStatus, WheelState
+from tcs_hil.control.bank_kmpc import BankOptimiser
+from tcs_hil.control.plan import Plan
+from tcs_hil.control.protocol import SolveStatus
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.hil.simulation import simulate
 from tcs_hil.safety_settings import GateSettings
-from tcs_hil.service import wiring
 from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.signals import TcsState
 
 FIRST, LAST = 500, 649
 
 
-class Failing:
-    """The law, but for some ticks."""
+def failing(plan: Callable[..., Plan]) -> Callable[..., Plan]:
+    """The solver, but for some of each wheel's ticks."""
+    asked: Counter[BankOptimiser] = Counter()
 
-    def __init__(self, law: Controller) -> None:
-        self._law = law
-        self._steps = 0
+    def planned(optimiser: BankOptimiser, *arguments: float) -> Plan:
+        asked[optimiser] += 1
+        found = plan(optimiser, *arguments)
+        failed = FIRST <= asked[optimiser] <= LAST
+        return replace(found, status=SolveStatus.FAILED) if failed else found
 
-    def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
-        self._steps += 1
-        proposal = self._law.step(wheel, torque_ref_nm)
-        failed = FIRST <= self._steps <= LAST
-        return Proposal(torque_ref_nm, SolveStatus.FAILED) if failed else proposal
-
-    def reset(self) -> None:
-        self._law.reset()
+    return planned
 
 
 def test_a_solver_that_fails_in_the_loop_costs_no_bump(monkeypatch: pytest.MonkeyPatch) -> None:
-    make = wiring.make_controller
-    monkeypatch.setattr(wiring, "make_controller", lambda *args: Failing(make(*args)))
+    monkeypatch.setattr(BankOptimiser, "plan", failing(BankOptimiser.plan))
     simulation = simulate(load_scenario("launch-mu-030"), ServiceConfig())
     replaced = [
         tick

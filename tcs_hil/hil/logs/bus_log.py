@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import can
+from can.io.generic import MessageReader
 
 from tcs_hil.errors import ConfigError
 
@@ -36,7 +38,8 @@ def read_log(path: Path) -> Iterator[can.Message]:
     """
     count = 0
     try:
-        with can.LogReader(str(path), **_options(path)) as reader:
+        with ExitStack() as files:
+            reader = _opened(path, files)
             for message in reader:
                 count += 1
                 if not (message.is_error_frame or message.is_remote_frame):
@@ -72,6 +75,13 @@ def salvage_log(path: Path) -> Salvage:
 def stamp_ns(message: can.Message) -> int:
     """The stamp as whole nanoseconds; a log of today holds a quarter of a microsecond."""
     return round(message.timestamp * NS_PER_S)
+
+
+def _opened(path: Path, files: ExitStack) -> MessageReader:
+    if path.suffix.lower() == ".blf":
+        # Opened here, because python-can does not close a file that is no BLF after all.
+        return can.BLFReader(files.enter_context(path.open("rb")))
+    return files.enter_context(can.LogReader(str(path), **_options(path)))
 
 
 def _options(path: Path) -> dict[str, Any]:

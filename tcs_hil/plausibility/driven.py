@@ -6,7 +6,7 @@ import math
 
 from tcs_hil.plausibility.trace import Duration, SpeedTrace
 
-APART_RATIO, APART_MPS = 0.1, 0.7  # the shaft twists, and a ring tells late
+APART_RATIO, APART_MPS = 0.1, 0.8  # the shaft twists, and a ring tells late
 SLOWER_RATIO, SLOWER_MPS = 0.03, 0.2  # than the rolling wheels no driven one is
 STEP_MPS = 0.5  # by which the two do not part in one tick
 STOOD_M = 0.1  # way on which a sensor that works has moved

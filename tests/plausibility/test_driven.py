@@ -47,7 +47,7 @@ def test_a_shaft_that_swings_is_no_contradiction(wheel: DrivenWheel) -> None:
 
 
 @pytest.mark.parametrize(
-    ("gap_mps", "apart"), [(1.9, False), (2.1, True), (-1.6, False), (-1.7, True)]
+    ("gap_mps", "apart"), [(1.8, False), (2.2, True), (-1.7, False), (-1.8, True)]
 )
 def test_only_what_is_too_far_apart_is_suspected(
     wheel: DrivenWheel, gap_mps: float, apart: bool

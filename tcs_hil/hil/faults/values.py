@@ -82,7 +82,7 @@ MOTOR_SPEED = {
     "off": found(0.15, *MOTOR_CODES, back_s=MOTOR_BACK_S),
     "stuck": nothing(STILL_TRUE, *MOTOR_CODES, back_s=MOTOR_BACK_S),
     "garbage": found(0.25, *MOTOR_CODES, back_s=MOTOR_BACK_S),
-    "half": found(0.25, *MOTOR_CODES, back_s=MOTOR_BACK_S),
+    "half": SMALL_MOTOR,  # below 2 m/s, where manoeuvre 1 is, a shaft that twists shows as much
     "loose contact": nothing(TOO_SHORT, Code.FRONT_SPEED_IMPLAUSIBLE, *MOTOR_CODES),
 }
 DRIVER = {

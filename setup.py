@@ -17,8 +17,8 @@ TICK = {
     "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
     " vehicle_node watch",
     "tcs_hil/canbus/mapping": "node",
-    "tcs_hil/control": "break_away compensated entry fallback force_disturbance guarded integrator"
-    " pi screening sent speed_disturbance swing_guard swings",
+    "tcs_hil/control": "break_away carried_force compensated entry fallback force_disturbance"
+    " guarded integrator pi screening sent speed_disturbance swing_guard swings",
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused loop_delay side",
     "tcs_hil/plausibility": "driven rolling screen trace",
     "tcs_hil/runtime": "lockstep record stopwatch transitions trigger",

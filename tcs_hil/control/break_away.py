@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from tcs_hil.control.carried_force import CarriedForce
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.model.vehicle import Vehicle
 
@@ -21,7 +22,6 @@ the force is seen late, and a tyre near standstill swings on its carcass."""
 
 HOLD_S = 0.25
 GROWTH_S = 0.4
-FORCE_S = 0.05
 
 
 class BreakAway:
@@ -37,21 +37,19 @@ class BreakAway:
 
     def __init__(self, slip_reference: float, vehicle: Vehicle, period_s: float) -> None:
         self._slip_ratio = SLIP_SHARE * slip_reference
-        self._slip_reference = slip_reference
-        self._arm_m = vehicle.wheel_radius_m / vehicle.gear_ratio
+        self._carried = CarriedForce(slip_reference, vehicle, period_s)
         self._period_s = period_s
-        self._gain = 1.0 - math.exp(-period_s / FORCE_S)
         self._growth = math.exp(period_s / GROWTH_S)
         self._calm_s = math.inf  # since the wheel last slid
         self.reset()
 
     def ceiling_nm(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> float:
         """Most torque in [0, torque_ref_nm] that may follow ``sent_nm``; called once a tick."""
-        self._observe(wheel)
+        self._carried.observe(wheel)
         if self._has_broken_away(wheel):
             if self._calm_s > HOLD_S:
                 self._least_nm = SENT_SHARE * sent_nm
-            carried_nm = FORCE_SHARE * self._force_n * self._arm_m
+            carried_nm = FORCE_SHARE * self._carried.torque_nm
             self._ceiling_nm = max(carried_nm, self._least_nm)
             self._calm_s = 0.0
         else:
@@ -63,17 +61,10 @@ class BreakAway:
 
     def reset(self) -> None:
         """Nothing is known of the road."""
-        self._force_n = 0.0
+        self._carried.reset()
         self._ceiling_nm = math.inf
         self._least_nm = 0.0
         self._calm_s = math.inf
-
-    def _observe(self, wheel: WheelState) -> None:
-        """Only a tyre that slides tells the most it carries; one that sticks, at least so much."""
-        slides = wheel.slip_ratio > self._slip_reference
-        if slides or wheel.tyre_force_n > self._force_n:
-            surplus_n = wheel.tyre_force_n - self._force_n
-            self._force_n += self._gain * surplus_n if math.isfinite(surplus_n) else 0.0
 
     def _has_broken_away(self, wheel: WheelState) -> bool:
         return (

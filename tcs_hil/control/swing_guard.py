@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from tcs_hil.control.carried_force import CarriedForce
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.swings import SwingMean, Swings
 from tcs_hil.model.vehicle import Vehicle
@@ -30,7 +31,6 @@ LOST_SHARE = 4.0
 """Beyond so many slip references a held wheel slides, and is left to the law."""
 
 SETTLING_S = 0.05
-FORCE_S = 0.05
 HOLD_S = 0.3
 LONGEST_HOLD_S = 2.0
 LONGER = 1.3
@@ -51,9 +51,8 @@ class SwingGuard:
 
     def __init__(self, slip_reference: float, vehicle: Vehicle, period_s: float) -> None:
         self._slip_reference = slip_reference
-        self._arm_m = vehicle.wheel_radius_m / vehicle.gear_ratio
+        self._carried = CarriedForce(slip_reference, vehicle, period_s)
         self._period_s = period_s
-        self._force_gain = 1.0 - math.exp(-period_s / FORCE_S)
         self._settling = 1.0 - math.exp(-period_s / SETTLING_S)
         self._growth = math.exp(period_s / GROWTH_S)
         self._slip, self._torque, self._fed = (Swings(period_s) for _ in range(3))
@@ -63,7 +62,7 @@ class SwingGuard:
     def reset(self) -> None:
         """Nothing swings."""
         self._forget_swings()
-        self._force_n = 0.0
+        self._carried.reset()
         self._asked_nm = 0.0  # by the driver, a tick ago
         self._level_nm = self._least_nm = 0.0  # what the ceiling settles at while it is held
         self._ceiling_nm = math.inf
@@ -92,11 +91,7 @@ class SwingGuard:
 
     def _observe(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> None:
         self._calm_s += self._period_s
-        surplus_n = wheel.tyre_force_n - self._force_n
-        slides = wheel.slip_ratio > self._slip_reference
-        if surplus_n > 0.0 or (slides and math.isfinite(surplus_n)):
-            # A tyre that slides tells what it carries; one that sticks, at least how much.
-            self._force_n += self._force_gain * surplus_n
+        self._carried.observe(wheel)
         stab_nm = self._period_s * STAB_NMPS
         if self.holds or not 0.0 <= torque_ref_nm - self._asked_nm <= stab_nm:
             self._forget_swings()  # what the driver sets swinging is no fault of the loop
@@ -121,7 +116,7 @@ class SwingGuard:
         self._hold_s = min(LONGER * self._hold_s, LONGEST_HOLD_S) if again else HOLD_S
         self._left_s, self._calm_s = self._hold_s, 0.0
         mean_nm = min(MEAN_SHARE * self._mean.value, self._ceiling_nm)
-        self._level_nm = max(mean_nm, CARRIED_SHARE * self._force_n * self._arm_m)
+        self._level_nm = max(mean_nm, CARRIED_SHARE * self._carried.torque_nm)
         self._least_nm = LEAST_SHARE * self._level_nm
         self._ceiling_nm = max(self._level_nm, min(sent_nm, self._ceiling_nm))
 
@@ -129,7 +124,7 @@ class SwingGuard:
         """Settle gently: near standstill a step of torque makes the tyre swing by itself."""
         self._left_s -= self._period_s
         if wheel.slip_ratio > SLIDING_SHARE * self._slip_reference:
-            carried_nm = CARRIED_SHARE * self._force_n * self._arm_m
+            carried_nm = CARRIED_SHARE * self._carried.torque_nm
             self._level_nm = max(carried_nm, self._least_nm)
         if wheel.slip_ratio > LOST_SHARE * self._slip_reference:
             self._left_s = 0.0

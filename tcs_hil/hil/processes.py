@@ -22,6 +22,14 @@ from tcs_hil.hil.child import run_module
 
 READY_TIMEOUT_S = 60.0
 STOP_TIMEOUT_S = 10.0
+PRELOADED = (
+    "tcs_hil.hil.uninterrupted",
+    "tcs_hil.hil.warm",
+    "tcs_hil.cli.run",
+    "tcs_hil.cli.record",
+    "plant_emulator.cli",
+)
+"""Modules imported before any program is forked off; the programs by name, as they are started."""
 
 
 class ProcessError(TcsError):
@@ -31,7 +39,7 @@ class ProcessError(TcsError):
 def fork_server() -> ForkServerContext:
     """The context of processes that start with everything loaded."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["tcs_hil.hil.uninterrupted", "tcs_hil.hil.warm"])
+    context.set_forkserver_preload(list(PRELOADED))
     return context
 
 

@@ -1,4 +1,4 @@
-"""What workers and programs of a bench need, imported and compiled once, before they are forked.
+"""What workers and cars of a bench need, imported and compiled once, before they are forked.
 
 multiprocessing's fork server can be told only which modules to import; importing
 this one also drives a plant and a service for a moment.
@@ -6,16 +6,12 @@ this one also drives a plant and a service for a moment.
 
 from __future__ import annotations
 
-import plant_emulator.cli
-import tcs_hil.cli.record
-import tcs_hil.cli.run
 import tcs_hil.hil.suite.library
 import tcs_hil.hil.suite.runner
 from plant_emulator.scenario import Variant, load_scenario
 from plant_emulator.session import warm_up
 
 VARIANTS: tuple[Variant, ...] = ("quarter-car", "vehicle")
-PROGRAMS = (plant_emulator.cli, tcs_hil.cli.run, tcs_hil.cli.record)
 # multiprocessing imports the bench's own main module in each of its children.
 WORKERS = (tcs_hil.hil.suite.library, tcs_hil.hil.suite.runner)
 

@@ -25,7 +25,7 @@ class CasadiCore:
         tuning = settings.default.nmpc
         self._flow = Flow(advance_function(settings, vehicle))
         self._problem = Linearisation(plan_function(settings, vehicle))
-        self._max_iterations = tuning.max_iterations
+        self._patience = tuning
         self._period_s = settings.period_s
         self._guess = np.zeros(len(tuning.blocks))  # (N,), Nm
         self.x = np.zeros(NX)
@@ -49,7 +49,7 @@ class CasadiCore:
         """Best torques (N,) in Nm from x on."""
         self._problem.start_from(self.x, torque_ref_nm, last_torque_nm, disturbance_n, urgency)
         feasible = np.minimum(self._guess, torque_ref_nm)
-        plan = minimise(self._problem, feasible, torque_ref_nm, self._max_iterations)
+        plan = minimise(self._problem, feasible, torque_ref_nm, self._patience)
         self._guess = np.append(plan.inputs[1:], plan.inputs[-1])
         return plan
 

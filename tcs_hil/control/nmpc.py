@@ -24,14 +24,14 @@ class NonlinearOptimiser:
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
         self._problem = Tracked(gauss_newton_function(settings, vehicle))
-        self._max_iterations = settings.nmpc.max_iterations
+        self._patience = settings.nmpc
 
     def plan(self, wheel: WheelState, integral_s: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm within [0, torque_ref_nm]."""
         state = (wheel.slip_speed_mps, wheel.wheel_speed_radps, integral_s)
         self._problem.start_from(state, torque_ref_nm)
         guess = expected(self._problem, torque_ref_nm)
-        return minimise(self._problem, guess, torque_ref_nm, self._max_iterations)
+        return minimise(self._problem, guess, torque_ref_nm, self._patience)
 
     def reset(self) -> None:
         """Forget the last model."""

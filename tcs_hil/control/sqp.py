@@ -14,13 +14,6 @@ from tcs_hil.control.protocol import SolveStatus
 
 FloatArray = NDArray[np.float64]
 
-STEP_TOLERANCE_NM = 1.5e-3
-"""A step this small is taken and ends the iteration.
-
-Along the paper's manoeuvres each iteration shrinks the error 180-fold or better
-(the residuals at the solution are small), so what is left is below 1e-5 Nm.
-"""
-
 ARMIJO = 1e-4
 STEP_LENGTHS = tuple(0.5**k for k in range(16))
 
@@ -37,6 +30,20 @@ class LeastSquares(Protocol):
         ...
 
 
+class Patience(Protocol):
+    """When to stop: after a step this small, or after so many."""
+
+    @property
+    def max_iterations(self) -> int:
+        """Linearisations of a tick."""
+        ...
+
+    @property
+    def step_tolerance_nm(self) -> float:
+        """Largest element of a step that is taken as the last one."""
+        ...
+
+
 def expected(problem: LeastSquares, ceiling_nm: float) -> FloatArray:
     """Where the model has its minimum (N,) within 0 to ceiling_nm; zero if it has none."""
     step = _box_step(problem, problem.plan, ceiling_nm)
@@ -44,18 +51,18 @@ def expected(problem: LeastSquares, ceiling_nm: float) -> FloatArray:
 
 
 def minimise(
-    problem: LeastSquares, plan: FloatArray, ceiling_nm: float, max_iterations: int
+    problem: LeastSquares, plan: FloatArray, ceiling_nm: float, patience: Patience
 ) -> Plan:
     """Minimise over 0 <= plan <= ceiling_nm from a feasible plan (N,).  Nothing is raised."""
     cost = problem.at(plan)
-    for iteration in range(1, max_iterations + 1):
+    for iteration in range(1, patience.max_iterations + 1):
         step = _box_step(problem, plan, ceiling_nm) if math.isfinite(cost) else None
         if step is None:
             return Plan(plan, SolveStatus.FAILED, iteration)
-        if max(map(abs, step.tolist())) <= STEP_TOLERANCE_NM:
+        if max(map(abs, step.tolist())) <= patience.step_tolerance_nm:
             return Plan(plan + step, SolveStatus.OK, iteration)
         plan, cost = _search(problem, plan, cost, step)
-    return Plan(plan, SolveStatus.MAX_ITERATIONS, max_iterations)
+    return Plan(plan, SolveStatus.MAX_ITERATIONS, patience.max_iterations)
 
 
 def _box_step(problem: LeastSquares, plan: FloatArray, ceiling_nm: float) -> FloatArray | None:

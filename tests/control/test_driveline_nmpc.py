@@ -15,7 +15,8 @@ from tcs_hil.control.driveline_transcription import advance_function, plan_funct
 from tcs_hil.control.force_disturbance import ForceDisturbance
 from tcs_hil.control.least_squares import Linearisation
 from tcs_hil.control.protocol import SolveStatus
-from tcs_hil.control.settings import ControlSettings
+from tcs_hil.control.settings import ControlSettings, NmpcSettings
+from tcs_hil.control.sqp import minimise
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.model.wheel import tyre_force_n
 from tests.control.believed_car import chatter_nm, drive
@@ -25,6 +26,8 @@ SETTINGS, VEHICLE = ControlSettings(), Vehicle()
 LINE, TUNING = SETTINGS.default.driveline, SETTINGS.default.nmpc
 STATE = np.array([0.4, 8.0, 0.001, 90.0, 8.2, 0.05, 900.0])
 REQUEST_NM, LAST_NM, DISTURBANCE_N, URGENCY = 200.0, 95.0, -150.0, 0.7
+EXACTLY = NmpcSettings()
+RESOLUTION_NM = 0.05  # of the limit on the bus
 
 
 def rate(_: float, x: np.ndarray, torque_nm: float) -> list[float]:
@@ -106,6 +109,18 @@ def test_the_gradient_is_the_slope_of_the_cost(problem: Linearisation) -> None:
         step[index] = 1e-3
         difference = (problem.at(plan + step) - problem.at(plan - step)) / 2e-3
         assert slope == pytest.approx(difference, rel=1e-4, abs=1e-4)
+
+
+def test_after_a_small_change_one_step_is_exact_to_less_than_the_bus_can_say(
+    problem: Linearisation,
+) -> None:
+    plan = minimise(problem, np.zeros(len(TUNING.blocks)), REQUEST_NM, EXACTLY).inputs
+    faster = STATE + 0.02 * np.eye(STATE.size)[1]  # rad/s
+    problem.start_from(faster, REQUEST_NM, LAST_NM, DISTURBANCE_N, URGENCY)
+    step = minimise(problem, plan, REQUEST_NM, TUNING)
+    exact = minimise(problem, plan, REQUEST_NM, EXACTLY)
+    assert step.iterations == 1 < exact.iterations
+    assert abs(step.inputs[0] - exact.inputs[0]) < RESOLUTION_NM / 2.0
 
 
 def test_a_plan_takes_no_more_iterations_than_allowed_and_stays_in_the_box() -> None:

@@ -6,9 +6,13 @@ import math
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from tcs_hil.control.protocol import SolveStatus
+from tcs_hil.control.settings import DrivelineNmpcSettings, NmpcSettings
 from tcs_hil.control.sqp import expected, minimise
+
+UNHURRIED = NmpcSettings()
 
 
 class Arctangents:
@@ -48,32 +52,44 @@ class Concave(Undefined):
 
 
 def test_the_line_search_tames_steps_that_would_diverge() -> None:
-    plan = minimise(Arctangents([30.0, 70.0]), np.array([100.0, 0.0]), 100.0, 20)
+    plan = minimise(Arctangents([30.0, 70.0]), np.array([100.0, 0.0]), 100.0, UNHURRIED)
     assert plan.status is SolveStatus.OK
     np.testing.assert_allclose(plan.inputs, [30.0, 70.0], atol=1e-5)
 
 
 def test_a_minimum_outside_the_box_is_met_at_the_bound() -> None:
-    plan = minimise(Arctangents([-5.0, 12.0]), np.array([8.0, 2.0]), 10.0, 20)
+    plan = minimise(Arctangents([-5.0, 12.0]), np.array([8.0, 2.0]), 10.0, UNHURRIED)
     np.testing.assert_allclose(plan.inputs, [0.0, 10.0], atol=1e-9)
 
 
 def test_a_good_guess_costs_one_evaluation() -> None:
     problem = Arctangents([30.0, 70.0])
-    plan = minimise(problem, np.array([30.0 + 5e-4, 70.0]), 100.0, 20)
+    plan = minimise(problem, np.array([30.0 + 5e-4, 70.0]), 100.0, UNHURRIED)
     assert plan.iterations == problem.evaluations == 1
     np.testing.assert_allclose(plan.inputs, [30.0, 70.0], atol=1e-9)
 
 
+def test_a_law_says_which_step_is_small_enough_to_be_its_last() -> None:
+    problem = Arctangents([30.0, 70.0])
+    plan = minimise(problem, np.array([29.0, 70.0]), 100.0, DrivelineNmpcSettings())
+    assert plan.iterations == problem.evaluations == 1
+    assert plan.status is SolveStatus.OK
+
+
 def test_running_out_of_iterations_is_a_status_with_a_plan_in_the_box() -> None:
-    plan = minimise(Arctangents([30.0, 70.0]), np.array([100.0, 0.0]), 100.0, 2)
+    plan = minimise(
+        Arctangents([30.0, 70.0]),
+        np.array([100.0, 0.0]),
+        100.0,
+        replace(UNHURRIED, max_iterations=2),
+    )
     assert plan.status is SolveStatus.MAX_ITERATIONS
     assert ((plan.inputs >= 0.0) & (plan.inputs <= 100.0)).all()
 
 
 @pytest.mark.parametrize("problem", [Undefined(), Concave()])
 def test_a_problem_that_cannot_be_solved_is_a_status(problem: Undefined) -> None:
-    assert minimise(problem, np.ones(2), 10.0, 20).status is SolveStatus.FAILED
+    assert minimise(problem, np.ones(2), 10.0, UNHURRIED).status is SolveStatus.FAILED
 
 
 def test_what_the_model_expects_lies_in_the_box_and_asks_nothing_of_the_problem() -> None:

@@ -8,11 +8,12 @@
 #include "shooting.h"
 #include "wheel_state.h"
 
-void driveline_setup(driveline *law, int block_count, int max_iterations) {
+void driveline_setup(driveline *law, int block_count, int max_iterations,
+                     double step_tolerance_nm) {
     const double *arguments[] = {law->parameters};
     double *results[] = {law->constants};
     driveline_fold(arguments, results, 0, 0, 0);
-    sqp_setup(&law->solver, block_count, max_iterations);
+    sqp_setup(&law->solver, block_count, max_iterations, step_tolerance_nm);
 }
 
 void driveline_reset(driveline *law) { sqp_reset(&law->solver); }

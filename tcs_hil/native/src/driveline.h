@@ -22,7 +22,8 @@ typedef struct {
 } driveline;
 
 /* Set up with period, gains, parameters and blocks filled in. */
-void driveline_setup(driveline *law, int block_count, int max_iterations);
+void driveline_setup(driveline *law, int block_count, int max_iterations,
+                     double step_tolerance_nm);
 
 /* Forget the last plan. */
 void driveline_reset(driveline *law);

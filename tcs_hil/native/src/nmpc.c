@@ -6,11 +6,11 @@
 #include "shooting.h"
 #include "wheel_model.h"
 
-void nmpc_setup(nmpc *law, int horizon, int max_iterations) {
+void nmpc_setup(nmpc *law, int horizon, int max_iterations, double step_tolerance_nm) {
     const double *arguments[] = {law->parameters};
     double *results[] = {law->constants};
     wheel_fold(arguments, results, 0, 0, 0);
-    sqp_setup(&law->solver, horizon, max_iterations);
+    sqp_setup(&law->solver, horizon, max_iterations, step_tolerance_nm);
     nmpc_reset(law);
 }
 

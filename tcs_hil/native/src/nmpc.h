@@ -21,7 +21,7 @@ typedef struct {
 } nmpc;
 
 /* Set up with integral, substeps, gains and parameters filled in. */
-void nmpc_setup(nmpc *law, int horizon, int max_iterations);
+void nmpc_setup(nmpc *law, int horizon, int max_iterations, double step_tolerance_nm);
 
 /* Forget the integral and the last model. */
 void nmpc_reset(nmpc *law);

@@ -3,15 +3,14 @@
 #include <math.h>
 #include <string.h>
 
-/* A step this small is taken and ends the iteration: see tcs_hil/control/sqp.py. */
-static const double STEP_TOLERANCE_NM = 1.5e-3;
 static const double ARMIJO = 1e-4;
 enum { HALVINGS = 16 };
 
-void sqp_setup(sqp *solver, int n, int max_iterations) {
+void sqp_setup(sqp *solver, int n, int max_iterations, double step_tolerance_nm) {
     memset(solver, 0, sizeof *solver);
     solver->qp.n = n;
     solver->max_iterations = max_iterations;
+    solver->step_tolerance_nm = step_tolerance_nm;
     sqp_reset(solver);
 }
 
@@ -85,7 +84,7 @@ int sqp_minimise(sqp *solver, least_squares *model, void *problem, double ceilin
     for (solver->iterations = 1; solver->iterations <= solver->max_iterations;
          solver->iterations++) {
         if (!isfinite(cost) || solve_model(solver, ceiling_nm) != SOLVE_OK) return SOLVE_FAILED;
-        if (longest(n, solver->qp.x) <= STEP_TOLERANCE_NM) {
+        if (longest(n, solver->qp.x) <= solver->step_tolerance_nm) {
             for (int i = 0; i < n; i++) solver->plan[i] += solver->qp.x[i];
             return SOLVE_OK;
         }

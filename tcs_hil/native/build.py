@@ -19,12 +19,10 @@ SOURCES = (
     "sqp",
     "nmpc",
     "wheel_model",
-    "wheel_chain",
     "observables",
     "bank",
     "driveline",
     "driveline_model",
-    "driveline_chain",
 )
 
 ffibuilder = FFI()
@@ -35,6 +33,12 @@ ffibuilder.set_source(
     sources=[str(ROOM / "src" / f"{name}.c") for name in SOURCES],
     depends=[str(path) for path in sorted((ROOM / "src").glob("*.h"))],
     include_dirs=[str(ROOM / "src")],
-    extra_compile_args=["-std=c11", "-O3", "-fno-math-errno", "-ffp-contract=off"],
+    extra_compile_args=[
+        "-std=c11",
+        "-O3",
+        "-fno-math-errno",
+        "-freciprocal-math",
+        "-ffp-contract=off",
+    ],
     optional=True,  # without a compiler the laws run in Python
 )

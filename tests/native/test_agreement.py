@@ -10,8 +10,15 @@ import pytest
 from msgspec.structs import replace
 from msgspec.structs import replace as replaced
 
+from tcs_hil.control.driveline import Driveline
 from tcs_hil.control.protocol import Controller, SolveStatus, WheelState
-from tcs_hil.control.settings import ControlSettings, KmpcSettings, NmpcSettings
+from tcs_hil.control.settings import (
+    ControlSettings,
+    DefaultSettings,
+    DrivelineNmpcSettings,
+    KmpcSettings,
+    NmpcSettings,
+)
 from tcs_hil.model.lifting import make_dictionary
 from tcs_hil.model.predictor import KoopmanPredictor
 from tcs_hil.model.radial import centre_count
@@ -97,6 +104,16 @@ def test_of_another_vehicle_with_another_tuning() -> None:
     # At 3 ms a few starts near standstill do not converge, and rounding decides where they end.
     assert pair.worst_nm(beyond=SolveStatus.MAX_ITERATIONS) < AGREEMENT_NM
     assert sum(native.status is SolveStatus.OK for native, _ in pair.answers) > 290
+
+
+def test_of_another_driveline_with_another_tuning() -> None:
+    line = Driveline(shaft_stiffness_nmprad=9000.0, motor_lag_s=0.008, tyre_relaxation_m=0.1)
+    tuning = DrivelineNmpcSettings(blocks=(1, 2, 1, 2), weight_integral=2e4, max_iterations=3)
+    settings = ControlSettings(default=DefaultSettings(driveline=line, nmpc=tuning))
+    pair = SideBySide(both(NMPC, settings))
+    for wheel, torque_ref_nm in random_questions(5, 300):
+        pair.step(wheel, torque_ref_nm)
+    assert pair.worst_nm() < AGREEMENT_NM
 
 
 @pytest.mark.parametrize("dictionary", ["monomials", "thin-plate", "gaussian"])

@@ -3,59 +3,58 @@
 #include <math.h>
 #include <string.h>
 
-#include "driveline_model.h"
 #include "least_squares.h"
-#include "shooting.h"
 #include "wheel_state.h"
 
 void driveline_setup(driveline *law, int block_count, int max_iterations,
                      double step_tolerance_nm) {
-    const double *arguments[] = {law->parameters};
-    double *results[] = {law->constants};
-    driveline_fold(arguments, results, 0, 0, 0);
+    driveline_fold(law->parameters, law->constants);
     sqp_setup(&law->solver, block_count, max_iterations, step_tolerance_nm);
 }
 
 void driveline_reset(driveline *law) { sqp_reset(&law->solver); }
 
-static void rate(const void *problem, const double *x, double torque_nm, double *its_rate,
-                 double *slopes) {
-    const driveline *law = problem;
-    const double *arguments[] = {x, &torque_nm, &law->disturbance_n, law->parameters,
-                                 law->constants};
-    double *results[] = {its_rate, slopes};
-    driveline_rate(arguments, results, 0, 0, 0);
-}
+static const dynamics MODEL = {DRIVELINE_NX, driveline_flow, driveline_step, driveline_chain};
 
-static const dynamics MODEL = {DRIVELINE_NX, rate, driveline_chain};
+static void depart(const driveline *law, double disturbance_n, int derives, shot *state) {
+    shot_start(state, &MODEL, law->parameters, law->constants, law->x, derives);
+    state->inputs[DISTURBANCE] = disturbance_n;
+}
 
 void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
                             double first_periods, double disturbance_n) {
     shot state;
-    law->disturbance_n = disturbance_n;
-    shot_start(&state, &MODEL, law, 0, law->x);
-    for (int k = 0; k < count; k++)
-        shot_step(&state, torques_nm[k], k, law->period_s * (k == 0 ? first_periods : 1.0));
+    depart(law, disturbance_n, 0, &state);
+    for (int k = 0; k < count; k++) {
+        shot_torque(&state, torques_nm[k]);
+        shot_step(&state, law->period_s * (k == 0 ? first_periods : 1.0));
+    }
     memcpy(law->x, state.x, sizeof law->x);
 }
 
-/* The residuals of one block: slip error, integral, torque reduction and change of torque. */
-static void add_block(const driveline *law, const double *plan, int k, const shot *state,
-                      gauss_newton *model) {
+/* The slip error at the end of a block and its integral. */
+static void add_errors(const driveline *law, double urgency, const shot *state,
+                       gauss_newton *model) {
     double kappa, by_state[2], row[BOX_QP_MAX];
-    const double *arguments[] = {state->x, law->parameters}, reference = law->parameters[0];
-    double *results[] = {&kappa, by_state};
-    const double *s = state->by_torque[0], *omega = state->by_torque[1];
-    const double held = sqrt(law->blocks[k]), tracking = held * law->urgency;
-    const double slip = tracking * law->slip_gain, integral = tracking * law->integral_gain;
-    driveline_slip(arguments, results, 0, 0, 0);
-    for (int j = 0; j <= k; j++) row[j] = -slip * (by_state[0] * s[j] + by_state[1] * omega[j]);
-    add_residual(model, slip * (reference - kappa), row, 0, k);
-    for (int j = 0; j <= k; j++) row[j] = integral * state->by_torque[2][j];
-    add_residual(model, integral * state->x[2], row, 0, k);
+    const double slip = urgency * law->slip_gain, integral = urgency * law->integral_gain;
+    const double *s = state->slope[0], *omega = state->slope[1];
+    const int last = state->columns - 1;
+    driveline_slip(state->x, law->parameters, &kappa, by_state);
+    for (int j = 0; j <= last; j++)
+        row[j] = -slip * (by_state[0] * s[j] + by_state[1] * omega[j]);
+    add_residual(model, slip * (law->parameters[0] - kappa), row, 0, last);
+    if (integral == 0.0) return;
+    for (int j = 0; j <= last; j++) row[j] = integral * state->slope[2][j];
+    add_residual(model, integral * state->x[2], row, 0, last);
+}
+
+/* The reduction of torque in a block and the change to it. */
+static void add_torques(const driveline *law, double held, const double *plan, int k,
+                        gauss_newton *model) {
+    double row[BOX_QP_MAX];
+    const int before = k > 0 ? k - 1 : 0;
     row[k] = -held * law->reduction_gain;
     add_residual(model, held * law->reduction_gain * (law->torque_ref_nm - plan[k]), row, k, k);
-    const int before = k > 0 ? k - 1 : 0;
     row[before] = -1.0;
     row[k] = 1.0;
     add_residual(model, plan[k] - (k > 0 ? plan[k - 1] : law->last_torque_nm), row, before, k);
@@ -64,14 +63,16 @@ static void add_block(const driveline *law, const double *plan, int k, const sho
 static double linearise(void *problem, int n, const double *plan, double *gradient,
                         double *hessian) {
     const driveline *law = problem;
-    gauss_newton model = {n, 0.0, gradient, hessian};
+    gauss_newton model = {0, n, 0.0, gradient, hessian};
     shot state;
-    shot_start(&state, &MODEL, law, gradient != 0, law->x);
+    depart(law, law->disturbance_n, gradient != 0, &state);
     clear(&model);
     for (int k = 0; k < n; k++) {
-        shot_torque(&state, k);
-        shot_step(&state, plan[k], k, law->blocks[k] * law->period_s);
-        add_block(law, plan, k, &state, &model);
+        const double held = sqrt(law->blocks[k]);
+        shot_torque(&state, plan[k]);
+        shot_step(&state, law->blocks[k] * law->period_s);
+        add_errors(law, held * law->urgency, &state, &model);
+        add_torques(law, held, plan, k, &model);
     }
     mirror(&model);
     return model.cost;

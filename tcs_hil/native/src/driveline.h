@@ -3,9 +3,10 @@
 #ifndef TCS_DRIVELINE_H
 #define TCS_DRIVELINE_H
 
+#include "driveline_model.h"
 #include "sqp.h"
 
-enum { DRIVELINE_NX = 7, DRIVELINE_PARAMETERS = 17, DRIVELINE_CONSTANTS = 16 };
+enum { DRIVELINE_NX = 7 };
 
 typedef struct {
     double x[DRIVELINE_NX]; /* the state that is rolled forward and planned from; SI units */
@@ -15,7 +16,7 @@ typedef struct {
     double urgency;         /* factor on the residuals of slip and integral */
     double period_s;
     double slip_gain, integral_gain, reduction_gain; /* Nm per unit slip, per second, per Nm */
-    double parameters[DRIVELINE_PARAMETERS];         /* of driveline_model.h */
+    double parameters[DRIVELINE_PARAMETERS];         /* of the model */
     double constants[DRIVELINE_CONSTANTS];           /* folded from them */
     int blocks[BOX_QP_MAX];                          /* periods each torque is held for */
     sqp solver;

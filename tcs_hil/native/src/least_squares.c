@@ -13,10 +13,11 @@ void clear(gauss_newton *model) {
 void add_residual(gauss_newton *model, double residual, const double *row, int first, int last) {
     model->cost += residual * residual;
     if (!model->gradient) return;
-    for (int i = first; i <= last; i++) {
-        double *line = model->hessian + i * model->n;
-        model->gradient[i] += 2.0 * residual * row[i];
-        for (int j = first; j <= i; j++) line[j] += 2.0 * row[i] * row[j];
+    for (int i = first > model->given ? first : model->given; i <= last; i++) {
+        double *restrict line = model->hessian + i * model->n;
+        const double twice = 2.0 * row[i];
+        model->gradient[i] += twice * residual;
+        for (int j = first; j <= i; j++) line[j] += twice * row[j];
     }
 }
 

@@ -4,18 +4,20 @@
 #define TCS_NMPC_H
 
 #include "sqp.h"
+#include "wheel_model.h"
 #include "wheel_state.h"
 
-enum { WHEEL_NX = 3, GIVEN = WHEEL_NX + 1, WHEEL_PARAMETERS = 11, WHEEL_CONSTANTS = 4 };
+/* What is given: [T_ref, x_0], x = [s, omega, e_int]. */
+enum { WHEEL_NX = 3, TORQUE_REF = 0, STATE, GIVEN = STATE + WHEEL_NX };
 
 typedef struct {
     proposal *answer; /* where it is written */
     slip_error_integral integral;
     int substeps;                          /* Runge-Kutta steps in a period */
     double slip_gain, integral_gain;       /* Nm per unit slip and per second: the residuals' */
-    double parameters[WHEEL_PARAMETERS];   /* of wheel_model.h */
+    double parameters[WHEEL_PARAMETERS];   /* of the model */
     double constants[WHEEL_CONSTANTS];     /* folded from them */
-    double given[GIVEN];                   /* [x_0, T_ref], x = [s, omega, e_int] */
+    double given[GIVEN];
     double drift[BOX_QP_MAX][GIVEN];       /* (N, 4), the gradient's derivatives by them */
     sqp solver;
 } nmpc;

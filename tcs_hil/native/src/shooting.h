@@ -6,51 +6,55 @@
 
 #include "box_qp.h"
 
-enum { SHOT_MAX = 7, SLOPES_MAX = SHOT_MAX * (SHOT_MAX + 1) };
+enum { SHOT_MAX = 7, COLUMNS_MAX = SHOT_MAX + BOX_QP_MAX };
 
-typedef double by_torques[BOX_QP_MAX]; /* the derivatives of one quantity */
+typedef double by_variables[COLUMNS_MAX]; /* the derivatives of one quantity */
 
-/* One stage of a step: what its slope d adds to the sum over the stages, and to the state before
-   for the next stage; all (nx, count). */
-typedef struct {
-    double weight, reach;
-    const by_torques *before, *at, *sum;
-    const double *torque;     /* 1 for the one that acts, 0 for the others */
-    by_torques *next, *total; /* before + reach d, sum + weight d */
-} stage;
+/* What a step is made with besides the state and the model's parameters. */
+enum input { STEP_S, TORQUE_NM, DISTURBANCE, INPUTS };
 
-/* With d = A at + B torque; `slopes` are the nonzero elements of (A, B), column by column.
-   Written for each model by scripts/generate_native.py. */
-typedef void slope_chain(const double *slopes, int count, const stage *of);
-slope_chain wheel_chain, driveline_chain;
+/* State (nx,) after one Runge-Kutta step; all four models are written by
+   scripts/generate_native.py. */
+typedef void model_flow(const double *restrict x, const double *restrict inputs,
+                        const double *restrict parameters, const double *restrict constants,
+                        double *restrict after);
 
-/* A model x' = f(x, u). */
+/* And the nonzero derivatives of `after` by [x, torque], column by column. */
+typedef void model_step(const double *restrict x, const double *restrict inputs,
+                        const double *restrict parameters, const double *restrict constants,
+                        double *restrict after, double *restrict slopes);
+
+/* slope (nx, count) = its product with those derivatives; the torque has the last column. */
+typedef void model_chain(const double *slopes, int count, by_variables *slope);
+
 typedef struct {
     int nx;
-    /* Write f (nx,) and, unless null, `slopes`. */
-    void (*rate)(const void *law, const double *x, double torque_nm, double *rate, double *slopes);
-    slope_chain *chain;
+    model_flow *flow;
+    model_step *step;
+    model_chain *chain;
 } dynamics;
 
 typedef struct {
     const dynamics *model;
-    const void *law;       /* whose parameters `rate` takes */
-    int derives;           /* are the derivatives wanted? */
+    const double *parameters, *constants; /* of the model */
+    int derives;                          /* are the derivatives wanted? */
+    int columns;                          /* of the variables so far */
+    double inputs[INPUTS];
     double x[SHOT_MAX];
-    by_torques *by_torque; /* (nx, N), the one of the next two that is up to date */
-    by_torques memory[2][SHOT_MAX], next[SHOT_MAX], torque;
+    by_variables slope[SHOT_MAX]; /* (nx, columns) */
 } shot;
 
-/* Start from x (nx,). */
-void shot_start(shot *state, const dynamics *model, const void *law, int derives, const double *x);
+/* Start from x (nx,), with no variable and no disturbance. */
+void shot_start(shot *state, const dynamics *model, const double *parameters,
+                const double *constants, const double *x, int derives);
 
-/* Derive by the state it starts from too, in the first nx columns. */
+/* The first nx variables are the state that it starts from. */
 void shot_from_state(shot *state);
 
-/* From here on the k-th torque acts; each in its turn. */
-void shot_torque(shot *state, int k);
+/* The next variable is the torque that acts from here on. */
+void shot_torque(shot *state, double torque_nm);
 
-/* Go on by one Runge-Kutta step under the k-th torque. */
-void shot_step(shot *state, double torque_nm, int k, double step_s);
+/* Go on by one Runge-Kutta step. */
+void shot_step(shot *state, double step_s);
 
 #endif

@@ -10,10 +10,14 @@ from functools import cache
 from importlib import import_module
 from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tcs_hil.errors import ConfigError
+from tcs_hil.native.sources import checksum, is_checkout
 
 FloatArray = NDArray[np.float64]
 
@@ -36,8 +40,18 @@ def tick_is_compiled() -> bool:
 
 @cache
 def core() -> Any:
-    """The extension: ``ffi`` and ``lib``, as declared in ``interface.h``."""
-    return import_module(_EXTENSION)
+    """The extension: ``ffi`` and ``lib``, as declared in ``interface.h``.
+
+    Raises ConfigError in a checkout whose C has changed since: structs that are laid out
+    in another way make nonsense without any sign of it.
+    """
+    extension, room = import_module(_EXTENSION), Path(__file__).parent
+    if is_checkout(room) and getattr(extension.lib, "sources_checksum", None) != checksum(room):
+        raise ConfigError(
+            f"the native step was not built from the C in {room}: "
+            "run pip install --no-build-isolation --no-deps -e ."
+        )
+    return extension
 
 
 def array_of(memory: Any) -> FloatArray:

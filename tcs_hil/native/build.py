@@ -4,6 +4,7 @@ Run by ``setup.py`` when the package is installed, never by the package itself.
 """
 
 from pathlib import Path
+from runpy import run_path
 
 from cffi import FFI
 
@@ -25,11 +26,15 @@ SOURCES = (
     "driveline_model",
 )
 
+checksum = run_path(str(ROOM / "sources.py"))["checksum"](ROOM)
+preamble = [f"static const unsigned sources_checksum = {checksum}u;"]
+preamble += [f'#include "{name}.h"' for name in HEADERS]
+
 ffibuilder = FFI()
 ffibuilder.cdef((ROOM / "interface.h").read_text(encoding="utf-8"))
 ffibuilder.set_source(
     "tcs_hil.native._core",
-    "".join(f'#include "{name}.h"\n' for name in HEADERS),
+    "\n".join(preamble),
     sources=[str(ROOM / "src" / f"{name}.c") for name in SOURCES],
     depends=[str(path) for path in sorted((ROOM / "src").glob("*.h"))],
     include_dirs=[str(ROOM / "src")],

@@ -1,6 +1,8 @@
 /* What Python sees of the native step, for cffi; the compiler checks it against src/.
    "...;" stands for what Python has no business with. */
 
+static const unsigned sources_checksum; /* of what this was compiled from: see sources.py */
+
 enum solve_status { SOLVE_OK, SOLVE_MAX_ITERATIONS, SOLVE_FAILED, SOLVE_BAD_INPUT };
 
 typedef struct {

@@ -1,8 +1,8 @@
 """The one seam to the compiler: numba turns the plant's pure functions into machine code.
 
-Compiled functions read parameters as NumPy records.  A record has the fields
-of the ``msgspec`` struct it was made from, so the functions are annotated with
-the struct: same names, same types.
+Compiled functions find parameters and memory in NumPy records.  A record has the
+fields of the ``msgspec`` struct or named tuple it was made from, so the functions
+are annotated with that: same names, same types.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ if not numba.config.CACHE_DIR:  # type: ignore[attr-defined]
     numba.config.CACHE_DIR = str(_cache_folder())  # type: ignore[attr-defined]
 
 F = TypeVar("F", bound=Callable[..., object])
-S = TypeVar("S", bound=msgspec.Struct)
+S = TypeVar("S")
 
 
 def compiled(function: F) -> F:
@@ -65,24 +65,37 @@ def compiled(function: F) -> F:
     return cast(F, numba.njit(**options)(function))
 
 
-def records(parameters: S) -> Sequence[S]:
-    """Return ``parameters`` (nested structs of numbers) as an array of one record.
+def records(parts: S) -> Sequence[S]:
+    """Return ``parts``, a struct or named tuple of numbers, arrays and more such, as one record.
 
-    Python hands an array to compiled code in a tenth of the time it takes to
-    hand over the record in it.
+    The record stands in an array, which Python hands to compiled code in a tenth of
+    the time it takes to hand over the record in it, or the parts one by one.  What
+    the parts hold is copied: from then on it lives in the record.
     """
-    return cast(Sequence[S], np.array([_values(parameters)], _layout(parameters)))
+    return cast(Sequence[S], np.array([_values(parts)], _layout(parts)))
 
 
-def _layout(parameters: msgspec.Struct) -> np.dtype[Any]:
-    fields = [(name, getattr(parameters, name)) for name in parameters.__struct_fields__]
-    return np.dtype(
-        [(n, _layout(v) if isinstance(v, msgspec.Struct) else np.dtype(type(v))) for n, v in fields]
-    )
+def opened(record: Sequence[S]) -> S:
+    """Return the parts of a record of `records`; arrays among them are the record's own memory."""
+    return cast(S, np.asarray(record).view(np.recarray)[0])
 
 
-def _values(parameters: msgspec.Struct) -> tuple[object, ...]:
-    return tuple(
-        _values(v) if isinstance(v, msgspec.Struct) else v
-        for v in msgspec.structs.astuple(parameters)
-    )
+def _layout(parts: object) -> np.dtype[Any]:
+    return np.dtype([(name, *_shape(value)) for name, value in _fields(parts)])
+
+
+def _shape(value: object) -> tuple[Any, ...]:
+    if isinstance(value, np.ndarray):
+        return value.dtype, value.shape
+    return (np.dtype(type(value)) if isinstance(value, float | int) else _layout(value),)
+
+
+def _values(parts: object) -> object:
+    if isinstance(parts, np.ndarray | float | int):
+        return parts
+    return tuple(_values(value) for _, value in _fields(parts))
+
+
+def _fields(parts: Any) -> Iterator[tuple[str, object]]:
+    names = parts.__struct_fields__ if isinstance(parts, msgspec.Struct) else parts._fields
+    return ((name, getattr(parts, name)) for name in names)

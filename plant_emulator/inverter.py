@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from plant_emulator.compiled import compiled
 from plant_emulator.driver import Line
@@ -20,6 +20,10 @@ class Demand(NamedTuple):
     request_nmps: Pair
     limit_nm: Pair
     limit_nmps: Pair
+
+
+Lines: TypeAlias = tuple[Pair, ...]
+"""A demand without its names, which Python hands to compiled code in a third of the time."""
 
 
 @compiled

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_emulator.bounds import Positive, Table
 from plant_emulator.compiled import compiled, records
-from plant_emulator.inverter import Demand, demanded
+from plant_emulator.inverter import Demand, Lines, demanded
 from plant_emulator.road import MU_LEFT, MU_RIGHT, patch_at, time_to_edge
 from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
 from plant_emulator.truth import (
@@ -91,48 +92,48 @@ def derivative(
     rate[POSITION] = state[SPEED]
 
 
+class Moving(NamedTuple):
+    """A car on its way, in one record: what it is, its state and where that is computed."""
+
+    car: QuarterCar
+    state: NDArray[np.float64]  # (4,)
+    work: Work
+
+
 @compiled
 def advance(
-    state: NDArray[np.float64],  # (4,), advanced in place
-    demand: Demand,
-    cars: Sequence[QuarterCar],  # one
+    moving: Sequence[Moving],  # one
+    lines: Lines,
     road: NDArray[np.float64],  # (patches, 5)
     duration_s: float,
-    work: Work,
 ) -> None:
     """Integrate with the classic Runge-Kutta method, in steps of at most 0.1 ms.
 
     A step ends where the car comes onto another patch of the road.
     """
-    steps = steps_for(duration_s)
+    state, demand, steps = moving[0].state, Demand(*lines), steps_for(duration_s)
     longest_s = duration_s / steps
     for step in range(steps):
         left_s = longest_s
         while left_s > 0.0:
             h = min(left_s, time_to_edge(road, state[POSITION], state[SPEED], 0.0))
             piece = (step * longest_s + longest_s - left_s, h)
-            _step(state, demand, cars, road, piece, work)
+            _step(moving[0], demand, road, piece)
             left_s -= h
 
 
 @compiled
-def _step(
-    state: NDArray[np.float64],
-    demand: Demand,
-    cars: Sequence[QuarterCar],
-    road: NDArray[np.float64],
-    piece: Pair,
-    work: Work,
-) -> None:
+def _step(moving: Moving, demand: Demand, road: NDArray[np.float64], piece: Pair) -> None:
     """One step on the road under the car; ``piece``: when on the demand's line, how long (s)."""
     elapsed_s, h = piece
+    state, work = moving.state, moving.work
     patch = road[patch_at(road, state[POSITION])]
     mu = (patch[MU_LEFT], patch[MU_RIGHT])
     for stage in range(4):
         offset_s = STAGES[stage] * h
         blend(work.trial, state, offset_s, work.rates[stage - 1])
         torque_nm = demanded(demand, elapsed_s + offset_s)
-        derivative(work.trial, torque_nm, mu, cars[0], work.rates[stage])
+        derivative(work.trial, torque_nm, mu, moving.car, work.rates[stage])
     conclude(state, h, work.rates)
 
 
@@ -140,32 +141,25 @@ class QuarterCarPlant:
     """State of a quarter car on a road; its sensors are ideal."""
 
     def __init__(self, car: QuarterCar, road: NDArray[np.float64], speed_mps: float) -> None:
-        self._car = records(car)
         self._road = road
         omega = speed_mps / car.wheel_radius_m
-        self._state = np.array([speed_mps, omega, omega, 0.0])
-        self._work = work_for(self._state.size)
+        state = np.array([speed_mps, omega, omega, 0.0])
+        self._moving = records(Moving(car, state, work_for(state.size)))
 
     def advance(self, demand: Demand, _time_s: float, duration_s: float) -> None:
         """Integrate over ``duration_s``."""
-        advance(self._state, demand, self._car, self._road, duration_s, self._work)
+        advance(self._moving, tuple(demand), self._road, duration_s)
 
     def observe(self, demand: Demand, row: Row) -> None:
         """Fill in every state; what a quarter car has not (shaft, pitch, rear force) stays zero."""
-        _observe(self._state, demand, self._car, self._road, row)
+        _observe(self._moving, tuple(demand), self._road, row)
 
 
 @compiled
-def _observe(
-    state: NDArray[np.float64],
-    demand: Demand,
-    cars: Sequence[QuarterCar],
-    road: NDArray[np.float64],
-    row: Row,
-) -> None:
-    car = cars[0]
+def _observe(moving: Sequence[Moving], lines: Lines, road: NDArray[np.float64], row: Row) -> None:
+    car, state = moving[0].car, moving[0].state
     patch = road[patch_at(road, state[POSITION])]
-    torque = demanded(demand, 0.0)
+    torque = demanded(Demand(*lines), 0.0)
     total_n = 0.0
     for wheel in range(4):
         driven, side = wheel < 2, wheel % 2

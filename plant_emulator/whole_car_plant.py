@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from plant_emulator import truth
 from plant_emulator.body import GRAVITY_MPS2
-from plant_emulator.compiled import compiled, records
+from plant_emulator.compiled import compiled, opened, records
 from plant_emulator.encoder import Encoder, WheelMotion, make_encoder, pass_edges
-from plant_emulator.inverter import Demand, demanded
+from plant_emulator.inverter import Demand, Lines, demanded
 from plant_emulator.road import site_at, time_to_edge
 from plant_emulator.runge_kutta import STAGES, Work, blend, conclude, steps_for, work_for
 from plant_emulator.sensors import IDEAL, Sensors
@@ -45,19 +45,24 @@ SETTLING_S = 3.0
 
 
 class Moving(NamedTuple):
-    """What changes while the car drives, and the arrays it is computed in."""
+    """A car on its way: what it is, what changes while it drives and where that is computed.
 
+    One record, because each array that Python hands over costs as much as a step.
+    """
+
+    car: WholeCar
     state: Array  # (SIZE,)
-    encoder: Encoder
+    numbers: NDArray[np.int64]  # (4, 3), the encoder's
+    marks: Array  # (4, 3), the encoder's
     work: Work
 
 
 @compiled
 def advance(
-    moving: Moving,
-    demand: Demand,
-    cars: Sequence[WholeCar],  # one
-    road: NDArray[np.float64],  # (patches, 5)
+    moving: Sequence[Moving],  # one
+    edges: Array,  # (4, edges of a turn), the encoder's
+    lines: Lines,
+    road: Array,  # (patches, 5)
     start_s: float,
     duration_s: float,
 ) -> None:
@@ -65,7 +70,9 @@ def advance(
 
     A step ends where an axle comes onto another patch of the road.
     """
-    state, wheelbase_m = moving.state, cars[0].body.wheelbase_m
+    demand = Demand(*lines)
+    _hold_or_release(moving[0], demand, road)
+    state, wheelbase_m = moving[0].state, moving[0].car.body.wheelbase_m
     steps = steps_for(duration_s)
     longest_s = duration_s / steps
     for step in range(steps):
@@ -73,23 +80,49 @@ def advance(
         while left_s > 0.0:
             h = min(left_s, time_to_edge(road, state[POSITION], state[SPEED], wheelbase_m))
             piece = (step * longest_s + longest_s - left_s, h)
-            _step(moving, demand, cars, road, start_s, piece)
+            _step(moving[0], demand, road, piece)
+            if edges.shape[1] > 0:
+                _watch_teeth(moving[0], edges, start_s, piece)
             left_s -= h
 
 
 @compiled
-def _step(
-    moving: Moving,
-    demand: Demand,
-    cars: Sequence[WholeCar],
-    road: NDArray[np.float64],
-    start_s: float,
-    piece: Pair,
-) -> None:
+def _hold_or_release(moving: Moving, demand: Demand, road: Array) -> None:
+    """Brake at standstill when nothing is asked of the motors; let go when they carry the car.
+
+    What counts is what they are asked for after their limits: a request that a limit
+    takes away opens no brake.
+    """
+    state, (left_nm, right_nm) = moving.state, demanded(demand, 0.0)
+    asked_nm, held = left_nm + right_nm, not math.isnan(state[HELD_AT])
+    if not held and asked_nm <= 0.0 and _stands(state, moving.car.body.wheel_radius_m):
+        state[HELD_AT : HELD_AT + 4] = state[ANGLE : ANGLE + 4]
+    elif held and asked_nm > _slope_torque(moving, road):
+        state[HELD_AT : HELD_AT + 4] = math.nan
+
+
+@compiled
+def _stands(state: Array, radius_m: float) -> bool:
+    fastest_mps = abs(state[SPEED])
+    for wheel in range(4):
+        fastest_mps = max(fastest_mps, abs(state[WHEEL + wheel] * radius_m))
+    return bool(fastest_mps < STANDSTILL_MPS)
+
+
+@compiled
+def _slope_torque(moving: Moving, road: Array) -> float:
+    """Torque of both motors together that balances the grade, Nm."""
+    body = moving.car.body
+    site = site_at(road, moving.state[POSITION], body.wheelbase_m, moving.work.row)
+    pull_n = body.mass_kg * GRAVITY_MPS2 * max(site.grade_sin, 0.0)
+    return pull_n * body.wheel_radius_m / moving.car.driveline.gear_ratio
+
+
+@compiled
+def _step(moving: Moving, demand: Demand, road: Array, piece: Pair) -> None:
     """One step on the road under the car; ``piece``: when on the demand's line, how long (s)."""
     elapsed_s, h = piece
-    state, encoder, work = moving
-    car = cars[0]
+    car, state, work = moving.car, moving.state, moving.work
     site = site_at(road, state[POSITION], car.body.wheelbase_m, work.row)
     for stage in range(4):
         offset_s = STAGES[stage] * h
@@ -98,28 +131,24 @@ def _step(
         derivative(work.trial, asked_nm, site, car, work.row, work.rates[stage])
     blend(work.trial, state, 0.0, work.rates[0])  # where the step began, for the teeth
     conclude(state, h, work.rates)
-    if encoder.edges.shape[1] > 0:
-        _watch_teeth(encoder, work.trial, state, start_s + elapsed_s, h)
 
 
 @compiled
-def _watch_teeth(encoder: Encoder, before: Array, after: Array, start_s: float, h: float) -> None:
+def _watch_teeth(moving: Moving, edges: Array, start_s: float, piece: Pair) -> None:
+    """Stamp the edges that passed in the step just taken."""
+    elapsed_s, h = piece
+    encoder = Encoder(edges, moving.numbers, moving.marks)
+    before, after = moving.work.trial, moving.state
     for wheel in range(4):
-        pass_edges(encoder, wheel, before[ANGLE + wheel], after[ANGLE + wheel], start_s, h)
+        angles = (before[ANGLE + wheel], after[ANGLE + wheel])
+        pass_edges(encoder, wheel, angles[0], angles[1], start_s + elapsed_s, h)
 
 
 @compiled
-def _observe(
-    state: Array,
-    rate: Array,
-    demand: Demand,
-    cars: Sequence[WholeCar],
-    road: NDArray[np.float64],
-    row: Row,
-) -> None:
-    car = cars[0]
+def _observe(moving: Sequence[Moving], lines: Lines, road: Array, row: Row) -> None:
+    car, state = moving[0].car, moving[0].state
     site = site_at(road, state[POSITION], car.body.wheelbase_m, row)
-    derivative(state, demanded(demand, 0.0), site, car, row, rate)
+    derivative(state, demanded(Demand(*lines), 0.0), site, car, row, moving[0].work.trial)
     row[truth.DISTANCE], row[truth.BODY_SPEED] = state[POSITION], state[SPEED]
     row[truth.SPECIFIC_FORCE] = row[truth.ACCEL] + GRAVITY_MPS2 * (site.grade_sin + state[PITCH])
     row[truth.PITCH], row[truth.HEAVE] = state[PITCH], state[HEAVE]
@@ -146,11 +175,9 @@ class WholeCarPlant:
     def __init__(
         self, car: WholeCar, road: NDArray[np.float64], speed_mps: float, sensors: Sensors
     ) -> None:
-        self._parameters = car
-        self._car = records(car)
+        self._car = car
         self._road = road
         self._state = _rolling(car, road, speed_mps)
-        self._work = work_for(SIZE)
         self._fit(IDEAL)
         if speed_mps == 0.0:
             self._settle()
@@ -159,8 +186,12 @@ class WholeCarPlant:
     def _fit(self, sensors: Sensors) -> None:
         """Put toothed rings on the wheels as they stand."""
         rng = np.random.default_rng(sensors.seed)
-        self.encoder = make_encoder(sensors.teeth, sensors.pitch_error_ratio, self.wheels, rng)
-        self._moving = Moving(self._state, self.encoder, self._work)
+        fitted = make_encoder(sensors.teeth, sensors.pitch_error_ratio, self.wheels, rng)
+        still = Moving(self._car, self._state, fitted.numbers, fitted.marks, work_for(SIZE))
+        self._moving = records(still)
+        moving = opened(self._moving)
+        self._state = moving.state
+        self.encoder = Encoder(fitted.edges, moving.numbers, moving.marks)
 
     @property
     def wheels(self) -> WheelMotion:
@@ -175,8 +206,8 @@ class WholeCarPlant:
         Raises:
             ConfigError: the parameters are too stiff for the integration step.
         """
-        self._hold_or_release(sum(map(min, demand.request_nm, demand.limit_nm)))
-        advance(self._moving, demand, self._car, self._road, time_s, duration_s)
+        lines = tuple(demand)
+        advance(self._moving, self.encoder.edges, lines, self._road, time_s, duration_s)
         if not math.isfinite(self._state[SPEED]):
             raise ConfigError(
                 f"the plant diverged at {time_s:.3f} s: "
@@ -185,41 +216,13 @@ class WholeCarPlant:
 
     def observe(self, demand: Demand, row: Row) -> None:
         """Fill in every state, force and load now."""
-        _observe(self._state, self._work.trial, demand, self._car, self._road, row)
+        _observe(self._moving, tuple(demand), self._road, row)
 
     def _settle(self) -> None:
         """Let a car that starts from rest sink into its springs, held by its brakes."""
         still = Demand((0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0))
         self.advance(still, 0.0, SETTLING_S)
         self._state[POSITION] = 0.0
-
-    def _hold_or_release(self, asked_nm: float) -> None:
-        """Brake at standstill when nothing is asked of the motors; let go when they carry the car.
-
-        ``asked_nm`` is what both together are asked for after their limits: a request
-        that a limit takes away opens no brake.
-        """
-        held = self._state[HELD_AT : HELD_AT + 4]
-        if math.isnan(held[0]):
-            if asked_nm <= 0.0 and self._stands:
-                held[:] = self._state[ANGLE : ANGLE + 4]
-        elif asked_nm > self._slope_torque_nm:
-            held[:] = np.nan
-
-    @property
-    def _stands(self) -> bool:
-        rims = self._state[WHEEL : WHEEL + 4] * self._parameters.body.wheel_radius_m
-        return bool(
-            abs(self._state[SPEED]) < STANDSTILL_MPS and np.abs(rims).max() < STANDSTILL_MPS
-        )
-
-    @property
-    def _slope_torque_nm(self) -> float:
-        """Torque of both motors together that balances the grade."""
-        body, line = self._parameters.body, self._parameters.driveline
-        site = site_at(self._road, self._state[POSITION], body.wheelbase_m, self._work.row)
-        pull_n = body.mass_kg * GRAVITY_MPS2 * max(site.grade_sin, 0.0)
-        return pull_n * body.wheel_radius_m / line.gear_ratio
 
 
 def _rolling(car: WholeCar, road: NDArray[np.float64], speed_mps: float) -> Array:

@@ -22,7 +22,8 @@ TICK = {
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused loop_delay side",
     "tcs_hil/plausibility": "driven rolling screen trace",
     "tcs_hil/runtime": "lockstep record stopwatch transitions trigger",
-    "plant_emulator": "emulator link plant plant_faults virtual_bus",
+    "tcs_hil/hil": "busless simulation",
+    "plant_emulator": "emulator limit_keeper link pedal plant plant_faults sensor_set virtual_bus",
 }
 
 

@@ -66,18 +66,19 @@ class Emulator:
     def publish(self) -> None:
         """Sample the sensors, queue every frame that is due, put the truth on record."""
         self._wake_or_sleep()
-        for frame_id, data in sorted(self._node.frames(self.plant.signals(), self._now_ns)):
+        for frame_id, data in self._node.frames(self.plant.signals(), self._now_ns):
             self._link.offer(self._now_ns, frame_id, data, Sender.VEHICLE)
         self._recorder.add(self.plant.row)
         self.relay(self._now_ns + self._answer_ns)
 
     def relay(self, until_ns: int) -> None:
         """Carry the bus on: send the vehicle's frames that are through, take the service's."""
-        for time_ns, frame in self._link.run_until(until_ns):
+        for delivery in self._link.run_until(until_ns):
+            frame = delivery.frame
             if frame.sender is Sender.VEHICLE:
                 self._port.send(frame.frame_id, frame.data)
             else:
-                self._take(time_ns, frame.frame_id, frame.data)
+                self._take(delivery.time_ns, frame.frame_id, frame.data)
 
     @property
     def next_arrival_ns(self) -> int | None:

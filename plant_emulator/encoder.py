@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_emulator.compiled import compiled
+from plant_emulator.compiled import compiled, opened, records
 
 TURN_RAD = 2.0 * math.pi
 
@@ -108,41 +109,59 @@ def _stamp(encoder: Encoder, wheel: int, number: int, time_s: float) -> None:
         encoder.marks[wheel, STAMP] = time_s
 
 
-class SpeedUnit(NamedTuple):
-    """What the unit that makes speeds of edges remembers; arrays, changed in place."""
+class SpeedMemory(NamedTuple):
+    """What the unit that makes speeds of edges knows and remembers; arrays, changed in place."""
 
+    pitch_rad: float
     dropout_s: float
     seen: NDArray[np.int64]  # (4,) edges at the last sample
     stamp_s: NDArray[np.float64]  # (4,) newest edge then
     speed_radps: NDArray[np.float64]  # (4,) speed shown then
 
 
-def make_speed_unit(encoder: Encoder, rolling: WheelMotion, dropout_s: float) -> SpeedUnit:
-    """Start a unit that already shows the wheels' speeds."""
-    return SpeedUnit(
-        dropout_s,
-        encoder.numbers[:, SEEN].copy(),
-        encoder.marks[:, STAMP].copy(),
-        rolling.speed_radps.copy(),
-    )
-
-
-@compiled
-def sample_speeds(unit: SpeedUnit, encoder: Encoder, time_s: float) -> None:
-    """Update the speed of each wheel, rad/s, as the electronics do once per cycle.
+class SpeedUnit:
+    """The electronics that make speeds of edges, once per cycle.
 
     Edges counted over the time between their stamps; held between edges, but
     never faster than one edge since the newest one allows; zero after
-    ``dropout_s`` without an edge.
+    ``dropout_s`` without an edge.  It starts with the wheels' speeds.
     """
-    pitch_rad = TURN_RAD / encoder.edges.shape[1]
+
+    def __init__(self, encoder: Encoder, rolling: WheelMotion, dropout_s: float) -> None:
+        self._encoder = encoder
+        self._memory = records(
+            SpeedMemory(
+                TURN_RAD / encoder.edges.shape[1],
+                dropout_s,
+                encoder.numbers[:, SEEN],
+                encoder.marks[:, STAMP],
+                rolling.speed_radps,
+            )
+        )
+        self._speed_radps = opened(self._memory).speed_radps
+
+    def sample(self, time_s: float) -> list[float]:
+        """Return the speed of each wheel at ``time_s``, rad/s."""
+        _update_speeds(self._memory, self._encoder.numbers, self._encoder.marks, time_s)
+        speeds: list[float] = self._speed_radps.tolist()
+        return speeds
+
+
+@compiled
+def _update_speeds(
+    memory: Sequence[SpeedMemory],  # one
+    numbers: NDArray[np.int64],  # (4, 3), the encoder's
+    marks: NDArray[np.float64],  # (4, 3), the encoder's
+    time_s: float,
+) -> None:
+    unit, pitch_rad = memory[0], memory[0].pitch_rad
     for wheel in range(4):
-        edges = encoder.numbers[wheel, SEEN] - unit.seen[wheel]
+        edges = numbers[wheel, SEEN] - unit.seen[wheel]
         if edges > 0:
-            between_s = encoder.marks[wheel, STAMP] - unit.stamp_s[wheel]
+            between_s = marks[wheel, STAMP] - unit.stamp_s[wheel]
             unit.speed_radps[wheel] = edges * pitch_rad / between_s
-            unit.stamp_s[wheel] = encoder.marks[wheel, STAMP]
-            unit.seen[wheel] = encoder.numbers[wheel, SEEN]
+            unit.stamp_s[wheel] = marks[wheel, STAMP]
+            unit.seen[wheel] = numbers[wheel, SEEN]
         silence_s = time_s - unit.stamp_s[wheel]
         if silence_s > unit.dropout_s:
             unit.speed_radps[wheel] = 0.0

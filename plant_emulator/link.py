@@ -47,9 +47,12 @@ class Link:
             for frame in layer.babble(self._babbled_ns, now_ns):
                 self._bus.offer(frame.time_ns, frame.frame_id, frame.data, Sender.VEHICLE)
         self._babbled_ns = max(now_ns, self._babbled_ns)
+        arrived = self._bus.run_until(now_ns)
+        if not self._layers:
+            return arrived
         return [
             delivery
-            for delivery in self._bus.run_until(now_ns)
+            for delivery in arrived
             if delivery.frame.sender is Sender.VEHICLE or not self._deaf(delivery.time_ns * 1e-9)
         ]
 

@@ -8,16 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_emulator.car import Car
-from plant_emulator.driver import Driver, Pedal
+from plant_emulator.driver import Driver
 from plant_emulator.encoder import Encoder
 from plant_emulator.faults import Fault
-from plant_emulator.inverter import Demand, LimitKeeper
+from plant_emulator.inverter import Demand
+from plant_emulator.limit_keeper import LimitKeeper
 from plant_emulator.own_car import own_car
+from plant_emulator.pedal import Pedal
 from plant_emulator.plant_faults import PlantFaults
 from plant_emulator.quarter_car import QuarterCarPlant
 from plant_emulator.road import MU_LEFT, MU_RIGHT, road_table
 from plant_emulator.scenario import Scenario
-from plant_emulator.sensors import IDEAL, SensorSet
+from plant_emulator.sensor_set import SensorSet
+from plant_emulator.sensors import IDEAL
 from plant_emulator.truth import DISTANCE, LIMIT, REQUEST, ROW_SIZE, TIME, Row, Truth, truth_of
 from plant_emulator.whole_car_plant import WholeCarPlant
 from tcs_hil.canbus.vehicle_node import VehicleSignals

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -30,11 +31,12 @@ class PlantFaults:
 
     def __init__(self, faults: tuple[Fault, ...], rng: np.random.Generator) -> None:
         self._rng = rng
-        self._layers = [self._layer(faults)]
+        self._scenario = [self._layer(faults)] if faults else []
+        self._layers = self._scenario
 
     def inject(self, faults: tuple[Fault, ...]) -> None:
         """Let ``faults`` act on what the scenario's leave, instead of those injected before."""
-        self._layers[1:] = [self._layer(faults)] if faults else []
+        self._layers = self._scenario + ([self._layer(faults)] if faults else [])
 
     def break_teeth(self, encoder: Encoder | None, time_s: float) -> None:
         """Let the toothed rings lack the teeth they lack from ``time_s`` on."""
@@ -65,7 +67,8 @@ class PlantFaults:
 
     def next_change(self, time_s: float) -> float:
         """When a motor's fault next begins, ends or reads what it is asked for."""
-        return min(layer.motors.next_change(time_s) for layer in self._layers)
+        changes = [layer.motors.next_change(time_s) for layer in self._layers]
+        return min(changes, default=math.inf)
 
     def _layer(self, faults: tuple[Fault, ...]) -> _Layer:
         return _Layer(

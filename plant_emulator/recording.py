@@ -56,8 +56,9 @@ class TruthRecorder:
     @property
     def rows(self) -> NDArray[np.void]:
         """What was collected so far, in the order of time."""
-        chunks = self._chunks or [np.empty((0, ROW_SIZE))]
-        return np.concatenate(chunks)[: self._count].view(TRUTH_DTYPE)[:, 0]
+        free = len(self._chunks) * CHUNK_ROWS - self._count
+        *full, last = self._chunks or [np.empty((0, ROW_SIZE))]
+        return np.concatenate([*full, last[: len(last) - free]]).view(TRUTH_DTYPE)[:, 0]
 
     def save(self, jitter_ns: NDArray[np.int64] | None = None) -> None:
         """Write what was collected; nothing without a path.

@@ -12,7 +12,6 @@ import heapq
 import math
 from collections import deque
 from enum import IntEnum
-from typing import NamedTuple
 
 import numpy as np
 
@@ -31,26 +30,43 @@ class Sender(IntEnum):
     STRANGER = 2
 
 
-class BusFrame(NamedTuple):
-    """A frame on its way; as a tuple it sorts by identifier, then by order of offering."""
+class BusFrame:
+    """A frame on its way.  ``order`` is that of offering; a sender has mailboxes per identifier."""
 
-    frame_id: int
-    order: int
-    data: bytes
-    sender: Sender
-    mailbox: int = 0
+    __slots__ = ("data", "frame_id", "mailbox", "order", "sender")
 
-    @property
-    def place(self) -> tuple[Sender, int, int]:
-        """Where the frame waits; there is room for one."""
-        return (self.sender, self.frame_id, self.mailbox)
+    def __init__(
+        self, frame_id: int, order: int, data: bytes, sender: Sender, mailbox: int
+    ) -> None:
+        self.frame_id = frame_id
+        self.order = order
+        self.data = data
+        self.sender = sender
+        self.mailbox = mailbox
+
+    def wins_over(self, other: BusFrame) -> bool:
+        """Whether it comes through when both start at once; of equals the older one."""
+        if self.frame_id != other.frame_id:
+            return self.frame_id < other.frame_id
+        return self.order < other.order
+
+    def replaces(self, other: BusFrame) -> bool:
+        """Whether it takes the place of ``other``, which still waits: a mailbox holds one frame."""
+        return (
+            self.frame_id == other.frame_id
+            and self.sender is other.sender
+            and self.mailbox == other.mailbox
+        )
 
 
-class Delivery(NamedTuple):
+class Delivery:
     """A frame at the end of its last bit."""
 
-    time_ns: int
-    frame: BusFrame
+    __slots__ = ("frame", "time_ns")
+
+    def __init__(self, time_ns: int, frame: BusFrame) -> None:
+        self.time_ns = time_ns
+        self.frame = frame
 
 
 class VirtualBus:
@@ -63,8 +79,8 @@ class VirtualBus:
         self._losses = np.random.default_rng([timing.seed, 1])
         self._bit_ns = 1e9 / timing.bitrate if timing.bitrate else 0.0
         self._order = 0
-        self._queued: list[tuple[int, BusFrame]] = []  # by the time they are offered
-        self._ready: dict[tuple[Sender, int, int], BusFrame] = {}  # by place
+        self._queued: list[tuple[int, int, BusFrame]] = []  # heap: when, order, what is offered
+        self._ready: list[BusFrame] = []  # want to be sent next, one to a mailbox
         self._sent: deque[Delivery] = deque()
         self._free_ns = 0
         self._now_ns = 0
@@ -80,7 +96,7 @@ class VirtualBus:
         """
         self._order += 1
         frame = BusFrame(frame_id, self._order, data, sender, mailbox)
-        heapq.heappush(self._queued, (max(time_ns, self._now_ns), frame))
+        heapq.heappush(self._queued, (max(time_ns, self._now_ns), self._order, frame))
 
     def run_until(self, now_ns: int) -> list[Delivery]:
         """Carry the bus on to ``now_ns``; returns what arrived since the last call, in order."""
@@ -90,8 +106,10 @@ class VirtualBus:
             self._transmit(start_ns)
         arrived = []
         while self._sent and self._sent[0].time_ns <= self._now_ns:
-            arrived.append(self._sent.popleft())
-        return [delivery for delivery in arrived if self._reaches_us(delivery.frame)]
+            delivery = self._sent.popleft()
+            if self._reaches_us(delivery.frame):
+                arrived.append(delivery)
+        return arrived
 
     @property
     def next_arrival_ns(self) -> int | None:
@@ -107,13 +125,19 @@ class VirtualBus:
     def _transmit(self, start_ns: int) -> None:
         """Let everybody who is there at ``start_ns`` arbitrate, and the winner send."""
         while self._queued and self._queued[0][0] <= start_ns:
-            frame = heapq.heappop(self._queued)[1]
-            self._ready[frame.place] = frame
-        winner = min(self._ready.values())
-        del self._ready[winner.place]
+            self._make_ready(heapq.heappop(self._queued)[2])
+        winner = self._ready[0]
+        for frame in self._ready:
+            if frame.wins_over(winner):
+                winner = frame
+        self._ready.remove(winner)
         bits = frame_bits(winner.frame_id, winner.data) if self._bit_ns else 0
         self._free_ns = start_ns + round(bits * self._bit_ns)
         self._sent.append(Delivery(self._free_ns, winner))
+
+    def _make_ready(self, frame: BusFrame) -> None:
+        self._ready = [waiting for waiting in self._ready if not frame.replaces(waiting)]
+        self._ready.append(frame)
 
     def _offer_strangers(self, until_ns: int) -> None:
         while self._stranger_ns <= until_ns:

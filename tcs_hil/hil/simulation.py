@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from plant_emulator.recording import TruthRecorder
 from plant_emulator.scenario import Scenario
 from tcs_hil.canbus.database import load_database
@@ -59,4 +57,4 @@ def simulate(
             car.hear(frame_id, data)
         commands.append(command)
         car.drive_on()
-    return Simulation(np.array(recorder.rows), tuple(commands))
+    return Simulation(recorder.rows, tuple(commands))

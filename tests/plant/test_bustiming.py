@@ -120,7 +120,7 @@ def test_cutting_time_into_pieces_changes_nothing():
             bus.offer(index * 500_000, 0x100 + index % 7, bytes(8), Sender.VEHICLE)
         for instant in instants:
             arrived += bus.run_until(instant)
-        return arrived
+        return list(zip((d.time_ns for d in arrived), ids(arrived), data(arrived), strict=True))
 
     assert run([120_000_000]) == run(range(0, 120_000_001, 37_000))
 
@@ -153,7 +153,8 @@ def test_the_wire_carries_one_frame_at_a_time_and_is_never_idle_while_one_waits(
         bus.offer(time_ns, frame_id, data, Sender.VEHICLE)
         waiting.append((time_ns, frame_id, data))
     free_ns = 0
-    for end_ns, frame in bus.run_until(1_000_000_000):
+    for delivery in bus.run_until(1_000_000_000):
+        end_ns, frame = delivery.time_ns, delivery.frame
         start_ns = end_ns - frame_bits(frame.frame_id, frame.data) * BIT_NS
         assert start_ns == max(free_ns, min(offer[0] for offer in waiting))
         there = [offer[1] for offer in waiting if offer[0] <= start_ns]

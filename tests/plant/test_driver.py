@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from plant_emulator.driver import Driver, Pedal
+from plant_emulator.driver import Driver
+from plant_emulator.pedal import Pedal
 
 
 @pytest.fixture
@@ -24,7 +25,8 @@ def pedal():
     ],
 )
 def test_the_request_follows_the_points(pedal, time_s, value, slope):
-    assert pedal.at(time_s) == pytest.approx((value, slope))
+    line = pedal.at(time_s)
+    assert (line.value, line.slope) == pytest.approx((value, slope))
 
 
 @pytest.mark.parametrize(

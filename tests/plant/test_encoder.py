@@ -8,11 +8,10 @@ import pytest
 from plant_emulator.encoder import (
     MISSING,
     SEEN,
+    SpeedUnit,
     WheelMotion,
     make_encoder,
-    make_speed_unit,
     pass_edges,
-    sample_speeds,
 )
 
 PITCH = 2 * math.pi / 96
@@ -27,7 +26,7 @@ def watch(speed, duration_s, pitch_error=0.0, missing=-1, dropout_s=0.25, teeth=
     start = rolling(speed(0.0))
     encoder = make_encoder(teeth, pitch_error, start, np.random.default_rng(3))
     encoder.numbers[0, MISSING] = missing
-    unit = make_speed_unit(encoder, start, dropout_s)
+    unit = SpeedUnit(encoder, start, dropout_s)
     angle, shown = start.angle_rad[0], []
     for step in range(round(duration_s / 1e-4)):
         time_s = step * 1e-4
@@ -35,8 +34,7 @@ def watch(speed, duration_s, pitch_error=0.0, missing=-1, dropout_s=0.25, teeth=
         pass_edges(encoder, 0, angle, after, time_s, 1e-4)
         angle = after
         if step % 20 == 19:
-            sample_speeds(unit, encoder, time_s + 1e-4)
-            shown.append(unit.speed_radps[0])
+            shown.append(unit.sample(time_s + 1e-4)[0])
     return np.array(shown), encoder
 
 

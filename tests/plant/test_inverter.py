@@ -4,8 +4,9 @@ import math
 
 import pytest
 
-from plant_emulator.driver import Line
-from plant_emulator.inverter import LimitKeeper, demanded
+from plant_emulator.inverter import demanded
+from plant_emulator.limit_keeper import LimitKeeper
+from plant_emulator.pedal import Line
 from tcs_hil.signals import TorqueLimits
 
 FULL = Line(250.0, 0.0)

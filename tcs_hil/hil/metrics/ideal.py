@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right
 
 from plant_emulator.body import GRAVITY_MPS2
-from plant_emulator.driver import Pedal
+from plant_emulator.pedal import Pedal
 from plant_emulator.road import MU_LEFT, MU_RIGHT, Patch
 from plant_emulator.scenario import Scenario
 from tcs_hil.hil.metrics.ideal_car import IdealCar, ideal_car

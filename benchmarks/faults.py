@@ -20,6 +20,7 @@ import click
 
 from benchmarks.section import markdown, show, write_section
 from tcs_hil.cli.progress import progress_bar
+from tcs_hil.console import NAME
 from tcs_hil.hil.faults.cell import Cell
 from tcs_hil.hil.faults.suite import family_cases, family_cells, fault_cases, fault_cells
 from tcs_hil.hil.faults.table import headings, legend, rows, shortfalls, summary
@@ -62,7 +63,9 @@ def page(cells: Sequence[Cell], results: Sequence[Result], where: str) -> list[s
 
 @click.command()
 @click.option("--mode", type=click.Choice(MODES), default="lockstep", show_default=True)
-@click.option("--channel", help="A SocketCAN interface to drive one fault of every family on.")
+@click.option(
+    "--channel", type=NAME, help="A SocketCAN interface to drive one fault of every family on."
+)
 @click.option("-j", "--jobs", type=click.IntRange(min=1), help="Cases driven at a time.")
 @click.option(
     "--write", type=click.Path(dir_okay=False, path_type=Path), help="Page to put the table into."

@@ -24,6 +24,7 @@ from benchmarks.options import json_option, write_option
 from benchmarks.section import markdown, tell
 from benchmarks.soak_samples import Footprint, Sample, Verdict, Watcher, judge
 from tcs_hil.cli.progress import progress_bar
+from tcs_hil.console import NAME, FiniteRange
 from tcs_hil.errors import TcsError
 from tcs_hil.runtime.recording import RecordingError
 
@@ -173,9 +174,9 @@ def _rate_hz(samples: Sequence[Sample]) -> float:
 
 
 @click.command()
-@click.option("--minutes", type=click.FloatRange(min=1.0), default=32.0, show_default=True)
-@click.option("--interface", default="auto", show_default=True)
-@click.option("--channel", default="vcan0", show_default=True)
+@click.option("--minutes", type=FiniteRange(min=1.0), default=32.0, show_default=True)
+@click.option("--interface", type=NAME, default="auto", show_default=True)
+@click.option("--channel", type=NAME, default="vcan0", show_default=True)
 @click.option("--controller", default="kmpc", show_default=True)
 @json_option
 @write_option

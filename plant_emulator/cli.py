@@ -45,12 +45,19 @@ def cli() -> None:
 @click.option(
     "--phase-us",
     type=click.IntRange(0, 2000),
-    default=0,
     help="Shift of the 2 ms grid against the monotonic clock's, in us.",
 )
-@click.option("--interface", default="auto", show_default=True, help="As in python-can, or `auto`.")
-@click.option("--channel", default="vcan0", show_default=True, help="As in python-can.")
-@click.option("--bitrate", type=click.IntRange(min=1), help="As in python-can.")
+@click.option(
+    "--interface",
+    type=console.NAME,
+    default="auto",
+    show_default=True,
+    help="As in python-can, or `auto`.",
+)
+@click.option(
+    "--channel", type=console.NAME, default="vcan0", show_default=True, help="As in python-can."
+)
+@click.option("--bitrate", type=click.IntRange(min=1), help="As in python-can; not SocketCAN's.")
 @click.option(
     "--record", type=click.Path(path_type=Path), help="Write the truth to this .npz file."
 )
@@ -62,11 +69,14 @@ def cli() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def run_command(scenario: str, vehicle: str | None, as_json: bool, **options: Any) -> None:
     """Drive a scenario on a CAN bus, in real time or in lockstep with the service."""
+    if options["mode"] == "lockstep":
+        console.refuse(options, ["phase_us"], "in lockstep there is no grid to shift")
     plan = load_scenario(scenario)
     if vehicle is not None:
         plan = plan.with_variant(cast(Variant, vehicle))
+    said = {name: value for name, value in options.items() if value is not None}
     with StopRequest() as stop:
-        summary = run(plan, Options(**options), stop.requested, _say)
+        summary = run(plan, Options(**said), stop.requested, _say)
     click.echo(msgspec.json.encode(summary).decode() if as_json else _sentence(summary))
 
 

@@ -17,6 +17,9 @@ T = TypeVar("T")
 FilePath = Annotated[str, msgspec.Meta(pattern=r"^[^\0]+$")]
 """A path that a file may have; relative ones are relative to the file that names it."""
 
+Name = Annotated[str, msgspec.Meta(pattern=r"\S")]
+"""Text with something in it."""
+
 WORDS = {
     "Object contains unknown field": "unknown key",
     "Object missing required field": "missing key",

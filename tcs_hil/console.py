@@ -2,14 +2,56 @@
 
 from __future__ import annotations
 
+import math
 import sys
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import click
 
-from tcs_hil.errors import TcsError
+from tcs_hil.errors import ConfigError, TcsError
 
 USER_ERROR = 2
 INTERRUPTED = 130
+
+
+class Name(click.types.StringParamType):
+    """Text that is not empty: an empty name is a script's unset variable, not a wish."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Refuse what has no letter in it."""
+        text: str = super().convert(value, param, ctx)
+        if not text.strip():
+            self.fail("is empty", param, ctx)
+        return text
+
+
+class FiniteRange(click.FloatRange):
+    """A number within bounds; nan, which is within all of them, and infinity are none."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Refuse what the bounds let through."""
+        number: float = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number", param, ctx)
+        return number
+
+
+NAME = Name()
+
+
+def refuse(options: Mapping[str, Any], names: Iterable[str], why: str) -> None:
+    """Refuse options that were given and would change nothing: silence would mislead.
+
+    Raises:
+        ConfigError: one of ``names`` was given; it is named.
+    """
+    for name in names:
+        value = options[name]
+        if not (value is None or value is False or value == ()):  # 0 was said, too
+            raise ConfigError(f"--{name.replace('_', '-')}: has no effect here; {why}")
 
 
 def counted(count: int, what: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
 from pathlib import Path
@@ -65,6 +66,8 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         del options.command[0]
     if not options.command:
         parser.error("no COMMAND given")
+    if options.timeout is not None and not 0.0 < options.timeout < math.inf:
+        parser.error(f"--timeout {options.timeout}: not a time to wait")
     for folder in options.rw:
         if not Path(folder).is_dir():
             parser.error(f"--rw {folder}: not a folder")

@@ -14,6 +14,11 @@ from tcs_hil.errors import BusError
 
 RECEIVE_BUFFER_BYTES = 4 << 20
 """The kernel's default holds some 280 frames: a fifth of a second of this bus."""
+RATELESS = {
+    "socketcan": "`ip link` sets that of a SocketCAN interface",
+    "embedded": "the embedded bus has no wire",
+}
+"""Why an interface does not take a bit rate; python-can would pass it over in silence."""
 _SO_RCVBUFFORCE = 33  # asm-generic/socket.h; not in the socket module
 
 
@@ -29,9 +34,13 @@ def open_bus(
         The bus and a line that says which one it is.
 
     Raises:
-        BusError: The interface is unknown, missing or cannot be opened.
+        BusError: The interface is unknown, missing or cannot be opened, or does not
+            take a ``bitrate``.
     """
     chosen, description = choose_interface(interface, channel)
+    if bitrate is not None and chosen in RATELESS:
+        why = RATELESS[chosen]
+        raise BusError(f"bitrate {bitrate}: has no effect on {chosen} {channel}; {why}")
     return _open(chosen, channel, bitrate), description
 
 
@@ -63,7 +72,7 @@ def _open(interface: str, channel: str, bitrate: int | None) -> can.BusABC:
     options: dict[str, Any] = {} if bitrate is None else {"bitrate": bitrate}
     try:
         if interface == "embedded":
-            return EmbeddedBus(channel, **options)
+            return EmbeddedBus(channel)
         bus = can.Bus(channel=channel, interface=interface, **options)
     except (can.CanError, NotImplementedError, OSError, ValueError, TypeError) as error:
         raise BusError(f"cannot open {interface} {channel}: {error}") from error

@@ -11,8 +11,9 @@ import msgspec
 from rich.console import Console
 from rich.markdown import Markdown
 
-from tcs_hil.cli.options import check_folder, json_option, refuse
+from tcs_hil.cli.options import check_folder, json_option
 from tcs_hil.cli.progress import progress_bar
+from tcs_hil.console import FiniteRange, refuse
 from tcs_hil.errors import ConfigError, offer
 from tcs_hil.hil.bench.effort import FULL, QUICK
 from tcs_hil.hil.bench.page import page
@@ -26,7 +27,7 @@ WIDE = 140
 @click.command()
 @click.option("--quick", is_flag=True, help="Few repetitions: to see that everything works.")
 @click.option("--only", metavar="PARTS", help=f"Some of {','.join(MEASURES)}. [all]")
-@click.option("--seconds", type=click.FloatRange(1.0, 3600.0), help="On the bus. [60, quick 1]")
+@click.option("--seconds", type=FiniteRange(1.0, 3600.0), help="On the bus. [60, quick 1]")
 @click.option(
     "--write",
     type=click.Path(dir_okay=False, path_type=Path),

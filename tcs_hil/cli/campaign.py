@@ -14,10 +14,9 @@ from msgspec.structs import replace
 from rich.console import Console
 from rich.table import Table as Page
 
-from tcs_hil.cli.options import refuse
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import convert
-from tcs_hil.console import counted
+from tcs_hil.console import counted, refuse
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.processes import interrupted_by_sigterm
 from tcs_hil.hil.study.design import corners, points

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from tcs_hil.cli.options import json_option
 from tcs_hil.cli.progress import progress_bar
+from tcs_hil.console import NAME
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.demo import Demo, Outcome, run_demo
 from tcs_hil.hil.machine import describe_machine
@@ -42,8 +43,12 @@ WIDE = 245
     show_default=True,
     help="Folder for figures, page, recordings and logs.",
 )
-@click.option("--interface", default="auto", show_default=True, help="As for `tcs-hil run`.")
-@click.option("--channel", help="As for `tcs-hil run`; without it vcan0, or one of our own.")
+@click.option(
+    "--interface", type=NAME, default="auto", show_default=True, help="As for `tcs-hil run`."
+)
+@click.option(
+    "--channel", type=NAME, help="As for `tcs-hil run`; without it vcan0, or one of our own."
+)
 @json_option
 def command(output: Path, interface: str, channel: str | None, as_json: bool) -> None:
     """Run both manoeuvres of the paper with every controller, between two processes on a bus.

@@ -8,6 +8,7 @@ import click
 import msgspec
 
 from tcs_hil.cli.options import json_option
+from tcs_hil.console import NAME
 from tcs_hil.runtime.doctor.examine import examine
 from tcs_hil.runtime.doctor.finding import Finding, Verdict
 from tcs_hil.runtime.doctor.machine import ThisMachine
@@ -20,7 +21,9 @@ STYLES: dict[Verdict, dict[str, Any]] = {
 
 
 @click.command()
-@click.option("--channel", default="vcan0", show_default=True, help="CAN interface to look at.")
+@click.option(
+    "--channel", type=NAME, default="vcan0", show_default=True, help="CAN interface to look at."
+)
 @click.option(
     "--seconds",
     type=click.IntRange(1, 3600),

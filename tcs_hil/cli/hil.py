@@ -10,9 +10,10 @@ from typing import Any, get_args
 import click
 import msgspec
 
-from tcs_hil.cli.options import BUS_OPTIONS, bus_options, check_folder, json_option, refuse
+from tcs_hil.cli.options import BUS_OPTIONS, bus_options, check_folder, json_option
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.cli.verdicts import show
+from tcs_hil.console import refuse
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.judging.verdict import Verdict
 from tcs_hil.hil.processes import interrupted_by_sigterm

@@ -9,9 +9,10 @@ import click
 from msgspec.structs import replace
 
 from tcs_hil.cli.identified import show_bank, show_predictor, show_refined
-from tcs_hil.cli.options import check_folder, json_option, refuse
+from tcs_hil.cli.options import check_folder, json_option
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import read_toml
+from tcs_hil.console import refuse
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.drives import read_drive
 from tcs_hil.model.bank import KoopmanBank, default_bank_path

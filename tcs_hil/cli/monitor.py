@@ -11,7 +11,8 @@ import msgspec
 
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.port import open_port
-from tcs_hil.cli.options import bus_options, refuse
+from tcs_hil.cli.options import bus_options
+from tcs_hil.console import refuse
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.monitor.snapshot import Snapshot
 from tcs_hil.hil.monitor.sources import BusSource, FlightSource, Source

@@ -10,9 +10,9 @@ import click
 from msgspec.structs import replace
 
 from tcs_hil.cli.damage import INCOMPLETE, warn_of
-from tcs_hil.cli.options import BUS_OPTIONS, bus_options, json_option, refuse
+from tcs_hil.cli.options import BUS_OPTIONS, bus_options, json_option
 from tcs_hil.cli.progress import progress_bar
-from tcs_hil.console import counted
+from tcs_hil.console import FiniteRange, counted, refuse
 from tcs_hil.hil.logs.sources import Sources, find_sources
 from tcs_hil.hil.replay.session import (
     Verdict,
@@ -39,7 +39,7 @@ DIFFERENT = 1
 @click.option("--preset", type=click.Choice(["paper", "default"]))
 @click.option(
     "--tolerance-nm",
-    type=click.FloatRange(min=0.0),
+    type=FiniteRange(min=0.0),
     default=0.0,
     show_default=True,
     help="How far a torque limit may be from the recorded one.",

@@ -9,9 +9,10 @@ import click
 from msgspec import to_builtins
 from msgspec.structs import replace
 
-from tcs_hil.cli.options import bus_options, json_option, refuse
+from tcs_hil.cli.options import bus_options, json_option
 from tcs_hil.cli.summary import show_summary
 from tcs_hil.config import convert
+from tcs_hil.console import refuse
 from tcs_hil.service.daemon import serve
 from tcs_hil.service.settings import ServiceConfig, read_service
 

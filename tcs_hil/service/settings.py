@@ -10,7 +10,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from tcs_hil.canbus.mapping.settings import SignalMap
-from tcs_hil.config import FilePath, read_toml
+from tcs_hil.config import FilePath, Name, read_toml
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.realtime import FIFO_PRIORITY
@@ -24,8 +24,8 @@ TriggerName = Literal["timer", "frame", "lockstep"]
 class BusSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where the frames are, in python-can's terms; ``auto`` is explained by ``open_bus``."""
 
-    interface: str = "auto"
-    channel: str = "vcan0"
+    interface: Name = "auto"
+    channel: Name = "vcan0"
     bitrate: Annotated[int, Meta(gt=0, le=1_000_000)] | None = None
     database: FilePath | None = None
 

@@ -43,6 +43,11 @@ def test_any_other_interface_of_python_can_passes_through():
         assert description == "virtual somewhere"
 
 
+def test_a_bit_rate_for_a_bus_without_a_wire_is_refused():
+    with pytest.raises(BusError, match=f"bitrate 500000: has no effect on embedded {MISSING_VCAN}"):
+        open_bus("auto", MISSING_VCAN, bitrate=500_000)
+
+
 @pytest.mark.parametrize("interface", ["bogus", "pcan"])
 def test_an_interface_python_can_cannot_open_is_named(interface):
     with pytest.raises(BusError, match=f"cannot open {interface} ch0: "):

@@ -1,7 +1,10 @@
 """Every mistake of the user: one sentence on stderr, exit status 2, no traceback."""
 
+import importlib
+from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import pytest
 from cli.ended import TcsHil
 
@@ -10,6 +13,15 @@ from tcs_hil.model.dataset import DatasetSettings
 from tcs_hil.model.edmd import IdentificationSettings, identify
 
 SMALL = DatasetSettings(trajectories=20, samples=20, period_s=0.001)
+
+
+def options() -> Iterator[tuple[str, click.Parameter]]:
+    """Every option of every command, with the command's name."""
+    for name in cli.COMMANDS:
+        command = importlib.import_module(f"tcs_hil.cli.{name}").command
+        for parameter in command.params:
+            if isinstance(parameter, click.Option):
+                yield name, parameter
 
 
 @pytest.fixture
@@ -56,6 +68,11 @@ def bad_files(tmp_path: Path) -> dict[str, Path]:
         (("report", "nowhere.tcsrec"), "nowhere.tcsrec"),
         (("record", "drive.mp3"), "drive.mp3"),
         (("identify", "--output", "no/such/folder/model.npz"), "no/such/folder/model.npz"),
+        (("identify", "--output", ""), "is a folder"),
+        (
+            ("run", "--interface", "embedded", "--bitrate", "500000"),
+            "bitrate 500000: has no effect",
+        ),
     ],
 )
 def test_a_bad_command_line_is_refused_in_one_sentence(
@@ -90,6 +107,23 @@ def test_a_bad_configuration_is_refused_in_one_sentence(
 def test_a_model_for_another_sampling_time_is_refused(tcs_hil: TcsHil, other_period: Path) -> None:
     refusal = tcs_hil("run", "--preset", "paper", "--model", str(other_period))
     assert refusal.is_one_sentence_about("fast.npz", "0.001")
+
+
+@pytest.mark.parametrize("text", ["nan", "inf"])
+def test_a_number_that_is_none_is_refused_wherever_one_is_asked_for(
+    tcs_hil: TcsHil, text: str
+) -> None:
+    asked = [each for each in options() if isinstance(each[1].type, click.types.FloatParamType)]
+    assert asked
+    for command, option in asked:
+        assert tcs_hil(command, option.opts[0], text).is_one_sentence_about(option.opts[0], text)
+
+
+def test_an_empty_name_of_a_bus_is_refused_in_every_command(tcs_hil: TcsHil) -> None:
+    asked = [each for each in options() if each[1].name in ("interface", "channel")]
+    assert len(asked) > len(("interface", "channel"))
+    for command, option in asked:
+        assert tcs_hil(command, option.opts[0], " ").is_one_sentence_about(option.opts[0], "empty")
 
 
 @pytest.mark.parametrize("name", list(cli.COMMANDS))

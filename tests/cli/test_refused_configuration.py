@@ -86,6 +86,8 @@ def test_a_number_out_of_its_bounds_is_refused(
     ("text", "key"),
     [
         ("[bus]\nbitrate = 2_000_000", "bus.bitrate"),
+        ("[bus]\nchannel = ''", "bus.channel"),
+        ("[bus]\ninterface = ' '", "bus.interface"),
         ("[tick]\ncpu = 4_000_000_000", "tick.cpu"),
         ("[tick]\ntrigger = 'whenever'", "tick.trigger"),
         ("controller = 'lqr'", "controller"),

@@ -25,6 +25,7 @@ def invoke(monkeypatch, capsys):
     return run
 
 
+LOCKSTEP = ("run", "--scenario", "manoeuvre-1", "--mode", "lockstep")
 SHORT = """
 description = "a tenth of a second"
 duration_s = 0.1
@@ -77,13 +78,9 @@ def test_help_shows_an_example(invoke, command):
         (("run", "--scenario", "manoeuvre-1", "--vehicle", "boat"), "--vehicle"),
         (("run", "--scenario", "manoeuvre-1", "--interface", "carrier-pigeon"), "carrier-pigeon"),
         (("run", "--scenario", "manoeuvre-1", "--record", "/nowhere/truth.npz"), "/nowhere"),
-        (
-            (
-                "run",
-                "--wings",
-            ),
-            "--wings",
-        ),
+        (("run", "--scenario", "manoeuvre-1", "--channel", ""), "'--channel': is empty"),
+        ((*LOCKSTEP, "--phase-us", "0"), "--phase-us: has no effect here; in lockstep"),
+        (("run", "--wings"), "--wings"),
         (("fly",), "fly"),
     ],
 )

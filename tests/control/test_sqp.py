@@ -71,7 +71,7 @@ def test_a_good_guess_costs_one_evaluation() -> None:
 
 def test_a_law_says_which_step_is_small_enough_to_be_its_last() -> None:
     problem = Arctangents([30.0, 70.0])
-    plan = minimise(problem, np.array([29.0, 70.0]), 100.0, DrivelineNmpcSettings())
+    plan = minimise(problem, np.array([29.5, 70.0]), 100.0, DrivelineNmpcSettings())
     assert plan.iterations == problem.evaluations == 1
     assert plan.status is SolveStatus.OK
 

@@ -8,6 +8,7 @@ are annotated with that: same names, same types.
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import os
 import tempfile
@@ -72,12 +73,18 @@ def records(parts: S) -> Sequence[S]:
     the time it takes to hand over the record in it, or the parts one by one.  What
     the parts hold is copied: from then on it lives in the record.
     """
-    return cast(Sequence[S], np.array([_values(parts)], _layout(parts)))
+    return cast(Sequence[S], np.array([_values(parts)], _same(_layout(parts))))
 
 
 def opened(record: Sequence[S]) -> S:
     """Return the parts of a record of `records`; arrays among them are the record's own memory."""
     return cast(S, np.asarray(record).view(np.recarray)[0])
+
+
+@functools.cache
+def _same(layout: np.dtype[Any]) -> np.dtype[Any]:
+    """The first layout that was equal: every call compares those that are not the very same."""
+    return layout
 
 
 def _layout(parts: object) -> np.dtype[Any]:

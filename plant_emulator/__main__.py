@@ -1,5 +1,14 @@
-"""`python -m plant_emulator` is `plant-emulator`."""
+"""``python -m plant_emulator``: the same as the ``plant-emulator`` command."""
 
-from plant_emulator.cli import main
+from tcs_hil.loading import loading
 
-main()
+
+def main() -> None:
+    """Entry point of ``plant-emulator``."""
+    with loading():
+        from plant_emulator.cli import main as command_line  # noqa: PLC0415
+    command_line()
+
+
+if __name__ == "__main__":
+    main()

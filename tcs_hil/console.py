@@ -10,9 +10,9 @@ from typing import Any
 import click
 
 from tcs_hil.errors import ConfigError, TcsError
+from tcs_hil.loading import INTERRUPTED
 
 USER_ERROR = 2
-INTERRUPTED = 130
 
 
 class Name(click.types.StringParamType):

@@ -9,6 +9,7 @@ import sys
 import click
 
 from tcs_hil import console
+from tcs_hil.loading import loading
 
 COMMANDS = {
     "run": "Run the traction control service on a bus.",
@@ -46,7 +47,8 @@ class LazyGroup(click.Group):
             sys.modules.setdefault("asammdf", None)  # type: ignore[arg-type]
             # Ten rows need no threads that spin beside the tick, nor 80 MB locked for them.
             os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        command: click.Command = importlib.import_module(f"{__name__}.{cmd_name}").command
+        with loading():
+            command: click.Command = importlib.import_module(f"{__name__}.{cmd_name}").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002 - click's signature

@@ -18,11 +18,12 @@ from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import convert
 from tcs_hil.console import counted, refuse
 from tcs_hil.errors import ConfigError
-from tcs_hil.hil.processes import interrupted_by_sigterm
+from tcs_hil.hil.interruption import interrupted_by_sigterm
 from tcs_hil.hil.study.design import corners, points
 from tcs_hil.hil.study.plan import Plan, Study, read_plan
 from tcs_hil.hil.study.trial import Row, job, run
 from tcs_hil.hil.toml import write_toml
+from tcs_hil.loading import loading
 
 WORST = 8
 FIGURES = ("rmse_ratio", "peak_slip_ratio", "gain_ratio", "spin_s", "limit_cycle_hz", "error")
@@ -80,9 +81,10 @@ def _campaign(
     plan: Plan, folder: Path, jobs: int | None, scheduler: str | None
 ) -> tuple[list[Row], list[str]]:
     # Dask, Arrow and Matplotlib are for this alone: `--only` does without.
-    from tcs_hil.hil.study.cluster import drive, workers  # noqa: PLC0415
-    from tcs_hil.hil.study.figure import save_study_figure  # noqa: PLC0415
-    from tcs_hil.hil.study.table import Table  # noqa: PLC0415
+    with loading():
+        from tcs_hil.hil.study.cluster import drive, workers  # noqa: PLC0415
+        from tcs_hil.hil.study.figure import save_study_figure  # noqa: PLC0415
+        from tcs_hil.hil.study.table import Table  # noqa: PLC0415
 
     everything = list(enumerate(points(plan.study)))
     for corner in corners(plan.study):  # what does not exist or fit is refused before anything runs

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from multiprocessing import get_context
 
 from plant_emulator.scenario import Scenario
 from tcs_hil.hil.metrics import Score, score
+from tcs_hil.hil.processes import spawned
 from tcs_hil.hil.simulation import simulate
 from tcs_hil.service.settings import ServiceConfig
 
@@ -41,8 +41,7 @@ def judge_all(jobs: Sequence[Job], progress: Progress, processes: int | None = N
     ``progress`` hears of the share done and the job that was last finished.  What
     a job raises is raised here.
     """
-    # Spawned, not forked: the compiled plant and the solvers must not inherit half a state.
-    with get_context("spawn").Pool(processes or os.cpu_count()) as pool:
+    with spawned(processes or os.cpu_count() or 1) as pool:
         return list(_reported(jobs, pool.imap(judge, jobs), progress))
 
 

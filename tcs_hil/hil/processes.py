@@ -8,22 +8,21 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
 import socket
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from multiprocessing.context import ForkServerContext
+from multiprocessing.pool import Pool
 from pathlib import Path
-from types import FrameType
 
 from tcs_hil.errors import TcsError
 from tcs_hil.hil.child import run_module
+from tcs_hil.hil.interruption import uninterrupted
 
 READY_TIMEOUT_S = 60.0
 STOP_TIMEOUT_S = 10.0
 PRELOADED = (
-    "tcs_hil.hil.uninterrupted",
     "tcs_hil.hil.warm",
     "tcs_hil.cli.run",
     "tcs_hil.cli.record",
@@ -41,6 +40,15 @@ def fork_server() -> ForkServerContext:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(list(PRELOADED))
     return context
+
+
+@contextmanager
+def spawned(processes: int) -> Iterator[Pool]:
+    """Processes that start afresh: solvers and compiled code must not inherit half a state."""
+    with ExitStack() as cleanup:
+        with uninterrupted():
+            pool = cleanup.enter_context(multiprocessing.get_context("spawn").Pool(processes))
+        yield pool
 
 
 class Program:
@@ -107,17 +115,17 @@ def program(*arguments: str, log: Path) -> Iterator[Program]:
     Raises:
         ProcessError: it ended or kept silent before it was ready, or failed later.
     """
-    with tempfile.TemporaryDirectory(prefix="tcs-hil.") as folder:
+    with ExitStack() as cleanup:
+        folder = cleanup.enter_context(tempfile.TemporaryDirectory(prefix="tcs-hil."))
         address = str(Path(folder) / "notify")
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listener:
-            listener.bind(address)
+        listener = cleanup.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
+        listener.bind(address)
+        with uninterrupted():  # the first one waits for the server, which would start it later
             child = Program(arguments, log, {"NOTIFY_SOCKET": address})
-            try:
-                _await_ready(child, listener)
-                yield child
-                child.end()
-            finally:
-                child.stop()
+            cleanup.callback(child.stop)
+        _await_ready(child, listener)
+        yield child
+        child.end()
 
 
 def _await_ready(child: Program, listener: socket.socket) -> None:
@@ -130,17 +138,3 @@ def _await_ready(child: Program, listener: socket.socket) -> None:
             if not child.running:
                 raise child.failure("ended before it was ready") from None
     raise child.failure(f"was not ready within {READY_TIMEOUT_S:g} s")
-
-
-@contextmanager
-def interrupted_by_sigterm() -> Iterator[None]:
-    """Let SIGTERM end the bench as Ctrl-C does: from the inside out, no program left behind."""
-
-    def interrupt(_number: int, _frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    previous = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, previous)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tcs_hil.hil.interruption import uninterrupted
 from tcs_hil.hil.processes import ProcessError, fork_server, program
 
 PATIENCE_S = 20.0
@@ -43,7 +44,9 @@ def wait_until_dead(pid: int) -> None:
 
 def test_what_the_bench_forks_off_leaves_ctrl_c_to_it() -> None:
     with ProcessPoolExecutor(1, mp_context=fork_server()) as pool:
-        assert pool.submit(signal.getsignal, signal.SIGINT).result() is signal.SIG_IGN
+        with uninterrupted():
+            asked = pool.submit(signal.raise_signal, signal.SIGINT)
+        assert asked.result(PATIENCE_S) is None
 
 
 def test_a_program_is_ready_when_it_says_so_and_stops_when_asked(script, tmp_path: Path) -> None:

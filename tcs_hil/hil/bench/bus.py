@@ -6,7 +6,6 @@ same grid, so what differs between their wakes is the service itself.
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import tempfile
 from pathlib import Path
@@ -20,7 +19,7 @@ from plant_emulator.scenario import Scenario, load_scenario
 from tcs_hil.canbus.bus import choose_interface
 from tcs_hil.hil.bench.effort import Effort, Progress
 from tcs_hil.hil.bench.statistics import Statistics
-from tcs_hil.hil.processes import program
+from tcs_hil.hil.processes import program, spawned
 from tcs_hil.hil.run import SERVICE_PHASE_US, RunPlan, execute
 from tcs_hil.hil.toml import write_toml
 from tcs_hil.runtime.clock import MonotonicClock
@@ -90,7 +89,7 @@ def _baseline(
     with (
         program("tcs_hil", "record", str(folder / "bus.blf"), *where, log=folder / "recorder.log"),
         program(*plant, log=folder / "plant.log"),
-        multiprocessing.get_context("spawn").Pool(1) as pool,
+        spawned(1) as pool,
     ):
         return pool.apply(_idle, (round(seconds * 1e9 / PERIOD_NS),))
 

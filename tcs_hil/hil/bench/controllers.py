@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 
 import msgspec
@@ -16,10 +16,13 @@ from tcs_hil.hil.bench.candidates import Candidate, candidates
 from tcs_hil.hil.bench.effort import Effort, Progress
 from tcs_hil.hil.bench.recorded import Drive, Question, record_drive
 from tcs_hil.hil.bench.statistics import Cost, Stopwatch, quiet_collector
+from tcs_hil.hil.interruption import uninterrupted
 from tcs_hil.hil.paper import SOLVE_TIMES, SolveTime
 from tcs_hil.service.settings import ServiceConfig
 
 MANOEUVRES = ("manoeuvre-1", "manoeuvre-2")
+PART = 100
+"""Questions asked in one go: half a second of the slowest peer."""
 
 
 class ControllerRow(msgspec.Struct, frozen=True):
@@ -72,8 +75,21 @@ def _asked(
     with warnings.catch_warnings(), quiet_collector():
         warnings.simplefilter("ignore")  # what peers say about their own dependencies
         for _ in range(repeats if candidate.ours else 1):
-            answers = replay(candidate.make(), questions, watch)
+            answers = _answers(candidate.make, questions, watch)
     return watch.cost, answers
+
+
+def _answers(
+    make: Callable[[], Controller], questions: Sequence[Question], watch: Stopwatch
+) -> NDArray[np.float64]:
+    """`replay`, but Ctrl-C waits for the end of a part: CasADi takes it for a failed step."""
+    with uninterrupted():
+        controller = make()
+    parts = []
+    for first in range(0, len(questions), PART):
+        with uninterrupted():
+            parts.append(replay(controller, questions[first : first + PART], watch))
+    return np.concatenate(parts)
 
 
 def replay(

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import msgspec
@@ -17,6 +18,7 @@ from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import TcsError
 from tcs_hil.hil.bench.candidates import PREDICTIVE, backends
 from tcs_hil.hil.bench.effort import Effort, Progress
+from tcs_hil.hil.interruption import uninterrupted
 from tcs_hil.hil.toml import write_toml
 from tcs_hil.runtime.recording import read
 from tcs_hil.service.settings import BusSettings, RecorderSettings, ServiceConfig
@@ -68,20 +70,21 @@ def _start_s(law: str, backend: Backend) -> float:
 
 def _run_until_ready(folder: Path) -> None:
     """Start the service, let it tick a little, and stop it."""
-    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listener:
+    with ExitStack() as cleanup:
+        listener = cleanup.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
         listener.bind(str(folder / "notify"))
         listener.settimeout(PATIENCE_S)
-        service = subprocess.Popen(
-            (sys.executable, "-m", "tcs_hil", "run", "--config", str(folder / "service.toml")),
-            env=os.environ | {"NOTIFY_SOCKET": str(folder / "notify")},
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
+        with uninterrupted():
+            service = subprocess.Popen(
+                (sys.executable, "-m", "tcs_hil", "run", "--config", str(folder / "service.toml")),
+                env=os.environ | {"NOTIFY_SOCKET": str(folder / "notify")},
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+            cleanup.callback(service.wait, STOP_S)
+            cleanup.callback(service.terminate)
         try:
             listener.recv(4096)
-            time.sleep(SETTLE_S)
         except TimeoutError as error:
             raise StartError(f"the service was not ready after {PATIENCE_S:g} s") from error
-        finally:
-            service.terminate()
-            service.wait(STOP_S)
+        time.sleep(SETTLE_S)

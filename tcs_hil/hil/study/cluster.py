@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import logging
 import os
-import signal
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 from tcs_hil.errors import ConfigError
+from tcs_hil.hil.interruption import uninterrupted
 from tcs_hil.hil.study.design import Point
 from tcs_hil.hil.study.plan import Plan
 from tcs_hil.hil.study.trial import Row, run
@@ -33,17 +33,11 @@ def workers(scheduler: str | None, processes: int | None) -> Iterator[Client]:
         ConfigError: nobody answers there.
     """
     if scheduler is None:
-        with (
-            LocalCluster(  # type: ignore[no-untyped-call]
-                n_workers=processes or os.cpu_count(),
-                threads_per_worker=1,
-                dashboard_address="127.0.0.1:0",  # None would be 8787, which another study may have
-                scheduler_kwargs={"dashboard": False},
-                silence_logs=40,
-            ) as cluster,
-            Client(cluster) as client,  # type: ignore[no-untyped-call]
-        ):
-            client.register_plugin(_QuietEnd())
+        with ExitStack() as stack:
+            with uninterrupted():
+                cluster = stack.enter_context(_own(processes))
+                client = stack.enter_context(Client(cluster))  # type: ignore[no-untyped-call]
+                client.register_plugin(_QuietEnd())
             yield client
         return
     try:
@@ -54,12 +48,21 @@ def workers(scheduler: str | None, processes: int | None) -> Iterator[Client]:
         yield client
 
 
+def _own(processes: int | None) -> LocalCluster:
+    return LocalCluster(  # type: ignore[no-untyped-call]
+        n_workers=processes or os.cpu_count(),
+        threads_per_worker=1,
+        dashboard_address="127.0.0.1:0",  # None would be 8787, which another study may have
+        scheduler_kwargs={"dashboard": False},
+        silence_logs=40,
+    )
+
+
 class _QuietEnd(WorkerPlugin):
-    """For workers of our own: the campaign hears Ctrl-C and ends them; they say nothing of it."""
+    """For workers of our own: the campaign ends them; they say nothing of it."""
 
     def setup(self, worker: object) -> None:  # noqa: ARG002 - Dask's signature
-        """Dask calls it in each worker's main thread, also in those that replace a dead one."""
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        """Dask calls it in each worker, also in those that replace a dead one."""
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
 
 

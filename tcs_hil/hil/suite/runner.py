@@ -16,6 +16,7 @@ from msgspec import structs
 
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.errors import ConfigError, TcsError
+from tcs_hil.hil.interruption import uninterrupted
 from tcs_hil.hil.judging.evidence import Evidence
 from tcs_hil.hil.judging.measured import CannotJudgeError
 from tcs_hil.hil.judging.of_run import RUN_METRICS, Stretch, stretch
@@ -86,7 +87,8 @@ def run_cases(cases: Sequence[Case], bench: Bench, jobs: int, progress: Progress
     """
     pool = ProcessPoolExecutor(jobs, mp_context=fork_server())
     try:
-        tasks = [pool.submit(run_case, case, bench) for case in cases]
+        with uninterrupted():
+            tasks = [pool.submit(run_case, case, bench) for case in cases]
         for done, task in enumerate(as_completed(tasks), 1):
             result = task.result()
             progress(done / len(tasks), f"{result.name} {result.verdict}")

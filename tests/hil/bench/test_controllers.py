@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+from contextlib import suppress
+
 import pytest
 from msgspec.structs import replace
 
@@ -59,6 +62,21 @@ class Echo:
 
     def reset(self) -> None:
         raise NotImplementedError
+
+
+class Deaf(Echo):
+    """Takes an interrupt for a failed step, as CasADi's solvers do, and goes on."""
+
+    def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        return super().step(wheel, torque_ref_nm)
+
+
+def test_ctrl_c_reaches_the_bench_through_a_solver_that_swallows_it() -> None:
+    peer = Candidate(ControllerKind.NMPC, "paper", "IPOPT", Deaf, ours=False)
+    with pytest.raises(KeyboardInterrupt):
+        controllers._asked(peer, [Question(WheelState.at_rest(), 5.0)], 1)
 
 
 def test_steps_without_a_request_are_answered_but_not_timed() -> None:

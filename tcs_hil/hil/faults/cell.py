@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import msgspec
 
 from plant_emulator.faults import Fault
 from tcs_hil.fault_codes import FaultCode
-from tcs_hil.hil.faults.manoeuvres import FAULT_S
+from tcs_hil.hil.faults.manoeuvres import FAULT_S, SLOW_MANOEUVRE
 from tcs_hil.signals import TcsState
 
 
@@ -33,7 +33,10 @@ class Promise:
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One fault: ``kind`` on each of ``targets``, for ``lasts_s``, as ``family`` says in words."""
+    """One fault: ``kind`` on each of ``targets``, for ``lasts_s``, as ``family`` says in words.
+
+    ``slow_promise`` takes the place of ``promise`` where the car is at walking pace.
+    """
 
     family: str
     targets: tuple[str, ...]
@@ -41,6 +44,12 @@ class Cell:
     promise: Promise
     lasts_s: float
     numbers: Mapping[str, float] = field(default_factory=dict)
+    slow_promise: Promise | None = None
+
+    def in_manoeuvre(self, manoeuvre: str) -> Cell:
+        """The cell with what is owed there alone."""
+        slow = self.slow_promise if manoeuvre == SLOW_MANOEUVRE else None
+        return replace(self, promise=slow or self.promise, slow_promise=None)
 
     @property
     def name(self) -> str:

@@ -9,10 +9,13 @@ from plant_emulator.scenario import Scenario
 FAULT_S = 0.7
 """When the fault comes: every law holds both motors by then."""
 
+SLOW_MANOEUVRE = "manoeuvre-1"
+"""Below 2 m/s when the fault comes."""
+
 _FULL_THROTTLE = Driver(request=((0.1, 0.0), (0.6, 250.0)))
 
 MANOEUVRES = {
-    "manoeuvre-1": Scenario(
+    SLOW_MANOEUVRE: Scenario(
         description="full throttle from 2 km/h on mu 0.3",
         duration_s=8.0,
         start_speed_kmph=2.0,

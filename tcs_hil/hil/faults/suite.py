@@ -55,6 +55,7 @@ def _one_of(family: list[Cell], number: int) -> Cell:
 
 def fault_case(cell: Cell, manoeuvre: str, law: ControllerName, config: ServiceConfig) -> Case:
     """One cell of one manoeuvre under one law."""
+    cell = cell.in_manoeuvre(manoeuvre)
     base = MANOEUVRES[manoeuvre]
     scenario = structs.replace(
         base,

@@ -28,7 +28,7 @@ def rows(cells: Sequence[Cell], results: Sequence[Result]) -> Iterator[list[str]
         passed = sum(each.verdict is Verdict.PASSED for each in of_cell)
         yield [
             f"{' and '.join(f'`{target}`' for target in cell.targets)} {cell.family}",
-            _owed(cell.promise, letters),
+            _owed(cell, letters),
             _named(of_cell),
             *(_figures(each) for each in laws),
             f"{passed} of {len(of_cell)}",
@@ -69,11 +69,19 @@ def _laws(results: Sequence[Result]) -> list[str]:
 
 def _letters(cells: Sequence[Cell]) -> dict[str, str]:
     """A letter for every reason for which nothing is owed."""
-    reasons = dict.fromkeys(cell.promise.why for cell in cells if cell.promise.why)
+    promises = (promise for cell in cells for promise in (cell.promise, cell.slow_promise))
+    reasons = dict.fromkeys(promise.why for promise in promises if promise and promise.why)
     return dict(zip(reasons, ascii_lowercase, strict=False))
 
 
-def _owed(promise: Promise, letters: Mapping[str, str]) -> str:
+def _owed(cell: Cell, letters: Mapping[str, str]) -> str:
+    owed = _in_words(cell.promise, letters)
+    if cell.slow_promise is None:
+        return owed
+    return f"{owed}, at walking pace {_in_words(cell.slow_promise, letters)}"
+
+
+def _in_words(promise: Promise, letters: Mapping[str, str]) -> str:
     if promise.within_s is None:
         return f"*{letters[promise.why]}*"
     if promise.within_s == 0.0:

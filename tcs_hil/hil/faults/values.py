@@ -82,7 +82,7 @@ MOTOR_SPEED = {
     "off": found(0.15, *MOTOR_CODES, back_s=MOTOR_BACK_S),
     "stuck": nothing(STILL_TRUE, *MOTOR_CODES, back_s=MOTOR_BACK_S),
     "garbage": found(0.25, *MOTOR_CODES, back_s=MOTOR_BACK_S),
-    "half": SMALL_MOTOR,  # below 2 m/s, where manoeuvre 1 is, a shaft that twists shows as much
+    "half": found(0.1, *MOTOR_CODES, back_s=MOTOR_BACK_S),
     "loose contact": nothing(TOO_SHORT, Code.FRONT_SPEED_IMPLAUSIBLE, *MOTOR_CODES),
 }
 DRIVER = {
@@ -113,13 +113,17 @@ TARGETS: dict[tuple[str, ...], tuple[Promises, Promise]] = {
 }
 """What is owed by the family, and what to those that are not named."""
 
+# At walking pace a shaft that twists shows as much.
+SLOW: Mapping[tuple[str, ...], Promise] = {("MotorSpeedL", "half"): SMALL_MOTOR}
+
 
 def value_cells() -> Iterator[Cell]:
     """Every kind a value's fault can have, on one signal of each sort."""
     for targets, (promises, otherwise) in TARGETS.items():
         for family, (kind, numbers) in FAMILIES.items():
             promise = promises.get(family, otherwise)
-            yield Cell(family, targets, kind, promise, LASTS_S, numbers)
+            slow = SLOW.get((*targets, family))
+            yield Cell(family, targets, kind, promise, LASTS_S, numbers, slow)
     yield _tooth("WheelSpeedFL", nothing(SMALL))
     yield _tooth("WheelSpeedRL", REAR)
     ignored = nothing(BEHIND)

@@ -95,6 +95,13 @@ def test_a_cell_either_owes_a_time_or_says_why_not(cell: Cell) -> None:
         assert promise.within_s <= cell.lasts_s
 
 
+def test_what_is_let_go_at_walking_pace_is_owed_where_the_car_is_faster() -> None:
+    (cell,) = (each for each in CELLS if each.slow_promise is not None)
+    slow, fast = (cell.in_manoeuvre(manoeuvre).promise for manoeuvre in MANOEUVRES)
+    assert (slow.within_s, fast.within_s) == (None, 0.1)
+    assert slow.codes == fast.codes
+
+
 def test_names_differ_even_where_the_words_are_alike() -> None:
     names = sorted(cell.name for cell in CELLS)
     assert all(one != other for one, other in pairwise(names))

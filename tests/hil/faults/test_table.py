@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import msgspec
 
 from tcs_hil.fault_codes import FaultCode
@@ -62,6 +64,13 @@ def test_a_law_is_shown_by_its_worse_manoeuvre() -> None:
 def test_a_manoeuvre_that_shows_nothing_is_not_hidden_by_the_other() -> None:
     row = cells_of(LOST, [result(LOST, 1, 4.0, 1.0), result(LOST, 2, None, 1.0)])
     assert row["pi"].startswith("4 or - → 20 or - ·")
+
+
+def test_what_is_owed_at_one_speed_only_says_so() -> None:
+    cell = replace(LOST, slow_promise=UNREAD.promise)
+    row = cells_of(cell, [result(cell, 1, None, 0.0)])
+    assert row["owed"] == "FAULT in 22 ms, at walking pace *a*"
+    assert legend([cell]) == legend([UNREAD])
 
 
 def test_what_is_not_owed_points_to_its_reason() -> None:

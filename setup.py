@@ -17,11 +17,13 @@ TICK = {
     "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
     " vehicle_node watch",
     "tcs_hil/canbus/mapping": "node",
-    "tcs_hil/control": "break_away carried_force compensated entry fallback force_disturbance"
-    " guarded integrator pi screening sent speed_disturbance swing_guard swings",
-    "tcs_hil/estimator": "body_speed direct driveline_observer friction fused loop_delay side",
+    "tcs_hil/control": "bank_kmpc break_away carried_force compensated driveline_nmpc entry"
+    " fallback force_disturbance guarded integrator native_bank native_driveline native_law pi"
+    " plan screening sent speed_disturbance swing_guard swings",
+    "tcs_hil/model": "wheel",
+    "tcs_hil/estimator": "body_speed direct driveline_observer friction fused held loop_delay side",
     "tcs_hil/plausibility": "driven rolling screen trace",
-    "tcs_hil/runtime": "lockstep record stopwatch transitions trigger",
+    "tcs_hil/runtime": "lockstep loop record recorder stopwatch transitions trigger",
     "tcs_hil/hil": "busless simulation",
     "plant_emulator": "emulator limit_keeper link pedal plant plant_faults sensor_set virtual_bus",
 }

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections import deque
 from enum import IntEnum
+from typing import Final
 
 from tcs_hil.safety_settings import GateSettings
 from tcs_hil.signals import NO_LIMIT
 
-BEYOND_ANY_REQUEST_NM = 1_000.0
+BEYOND_ANY_REQUEST_NM: Final = 1_000.0
 """Stands for a request that nobody knows: no motor of a car asks for more."""
 
 
@@ -24,6 +25,12 @@ class Permission(IntEnum):
     FOLLOW_SLOWLY = 1  # lowered at once, raised no faster than released
     HOLD = 2  # lowered, never raised
     RELEASE = 3  # the controllers are not asked; the driver gets the torque back
+
+
+FOLLOW: Final = Permission.FOLLOW
+FOLLOW_SLOWLY: Final = Permission.FOLLOW_SLOWLY
+HOLD: Final = Permission.HOLD
+RELEASE: Final = Permission.RELEASE
 
 
 class Gate:
@@ -38,12 +45,8 @@ class Gate:
 
     def __init__(self, settings: GateSettings, period_s: float) -> None:
         released_nm = settings.release_rate_nmps * period_s
-        self._rise_nm = {
-            Permission.FOLLOW: settings.rise_rate_nmps * period_s,
-            Permission.FOLLOW_SLOWLY: released_nm,
-            Permission.HOLD: 0.0,
-            Permission.RELEASE: released_nm,
-        }
+        trusted_nm = settings.rise_rate_nmps * period_s
+        self._rise_nm = (trusted_nm, released_nm, 0.0, released_nm)  # by Permission
         self._fall_nm = settings.fall_rate_nmps * period_s
         self._slack_nm = settings.slack_nm
         self._window_rise_nm = settings.window_rise_nm
@@ -59,7 +62,8 @@ class Gate:
         before_nm = min(self._ceiling_nm, most_nm)  # without a ceiling the request is in force
         target_nm = _target_nm(wanted_nm, before_nm, most_nm, permission)
         highest_nm = min(before_nm + self._rise(wanted_nm, before_nm, permission), most_nm)
-        if target_nm > before_nm and self._window_nm:
+        # No ceiling is below zero, so the window never forbids less than its rise.
+        if target_nm > max(before_nm, self._window_rise_nm) and self._window_nm:
             highest_nm = min(highest_nm, min(self._window_nm) + self._window_rise_nm)
         ceiling_nm = min(max(target_nm, before_nm - self._fall_nm, 0.0), highest_nm)
         self._ceiling_nm = self._kept_or_lifted(ceiling_nm, most_nm, permission)
@@ -67,12 +71,12 @@ class Gate:
 
     def _rise(self, wanted_nm: float, before_nm: float, permission: Permission) -> float:
         """Most it may rise now; trust comes back without a step, once wish and ceiling have met."""
-        if permission is not Permission.FOLLOW:
+        if permission is not FOLLOW:
             self._behind = True
         elif wanted_nm <= before_nm:
             self._behind = False
         elif self._behind:
-            permission = Permission.FOLLOW_SLOWLY
+            permission = FOLLOW_SLOWLY
         return self._rise_nm[permission]
 
     def _kept_or_lifted(self, ceiling_nm: float, most_nm: float, permission: Permission) -> float:
@@ -80,7 +84,7 @@ class Gate:
         unlimited = self._ceiling_nm == NO_LIMIT
         fell = not unlimited and most_nm < self._ceiling_nm
         self._ticks_to_lift = self._lift_ticks if fell else max(self._ticks_to_lift - 1, 0)
-        may_lift = permission is not Permission.HOLD and not self._ticks_to_lift
+        may_lift = permission is not HOLD and not self._ticks_to_lift
         if ceiling_nm >= most_nm - self._slack_nm and (unlimited or may_lift):
             self._window_nm.clear()
             return NO_LIMIT
@@ -89,6 +93,6 @@ class Gate:
 
 
 def _target_nm(wanted_nm: float, before_nm: float, most_nm: float, permission: Permission) -> float:
-    if permission is Permission.RELEASE:
+    if permission is RELEASE:
         return most_nm
     return wanted_nm if math.isfinite(wanted_nm) else before_nm

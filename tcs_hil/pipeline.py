@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final
 
 from tcs_hil.control.protocol import Controller, Proposal
 from tcs_hil.estimator import Estimate, Estimates
-from tcs_hil.gate import Gate, Permission
+from tcs_hil.gate import RELEASE, Gate, Permission
+from tcs_hil.judgement import Verdict
 from tcs_hil.plausibility import Plausibility, screened
 from tcs_hil.signals import (
     NO_LIMIT,
@@ -18,9 +19,10 @@ from tcs_hil.signals import (
     Pair,
     TorqueLimits,
 )
-from tcs_hil.supervisor import Supervisor, Verdict
+from tcs_hil.supervisor import Supervisor
+from tcs_hil.trace import Trace
 
-NO_PROPOSAL = Proposal(math.nan)
+NO_PROPOSAL: Final = Proposal(math.nan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,15 +32,6 @@ class Law:
     kind: ControllerKind
     slip_reference: float
     controllers: tuple[Controller, Controller]
-
-
-class Trace(NamedTuple):
-    """What the newest tick thought, for the flight recorder."""
-
-    estimate: Estimate
-    proposals: tuple[Proposal, Proposal]
-    verdict: Verdict
-    suspects: int = 0  # bits of Suspect
 
 
 class Pipeline:
@@ -68,7 +61,7 @@ class Pipeline:
         estimate = self._estimator.update(believed)
         verdict = self._supervisor.judge(measurement, self._suspects)
         proposals = self._propose(estimate, measurement.driver_torque_nm, verdict.permission)
-        if verdict.permission is not Permission.RELEASE:
+        if verdict.permission is not RELEASE:
             verdict = self._supervisor.heard(proposals)
         limits = self._gate(proposals, measurement.driver_torque_nm, verdict.permission)
         return self._command(limits, verdict, estimate, proposals)
@@ -88,7 +81,7 @@ class Pipeline:
         self, estimate: Estimate, request_nm: Pair, permission: Permission
     ) -> tuple[Proposal, Proposal]:
         left, right = self._law.controllers
-        if permission is Permission.RELEASE:
+        if permission is RELEASE:
             # Inputs that are not trusted must not wind up an integrator.
             left.reset()
             right.reset()
@@ -102,10 +95,9 @@ class Pipeline:
     def _gate(
         self, proposals: tuple[Proposal, Proposal], request_nm: Pair, permission: Permission
     ) -> TorqueLimits:
-        left, right = (
-            gate.limit(proposal.torque_nm, request, permission)
-            for gate, proposal, request in zip(self._gates, proposals, request_nm, strict=True)
-        )
+        left_gate, right_gate = self._gates
+        left = left_gate.limit(proposals[0].torque_nm, request_nm[0], permission)
+        right = right_gate.limit(proposals[1].torque_nm, request_nm[1], permission)
         allowed_nm = (min(left, request_nm[0]), min(right, request_nm[1]))
         self._estimator.sent(allowed_nm, request_nm)
         self._plausibility.sent(allowed_nm)
@@ -118,13 +110,13 @@ class Pipeline:
         estimate: Estimate,
         proposals: tuple[Proposal, Proposal],
     ) -> Command:
-        active = (limits.left_nm < NO_LIMIT, limits.right_nm < NO_LIMIT)
-        if any(active):
+        left, right = limits.left_nm < NO_LIMIT, limits.right_nm < NO_LIMIT
+        if left or right:
             verdict = self._supervisor.limiting()
         self.trace = Trace(estimate, proposals, verdict, self._suspects)
         return Command(
             limits=limits,
-            active=active,
+            active=(left, right),
             state=verdict.state,
             fault_code=verdict.fault_code,
             controller=self._law.kind,

@@ -12,54 +12,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from enum import IntEnum
-from typing import NamedTuple
+from typing import Final, NamedTuple
+
+from msgspec.structs import replace
 
 from tcs_hil.control.protocol import Proposal, Source
+from tcs_hil.control.screening import decided
 from tcs_hil.fault_codes import FaultCode
-from tcs_hil.gate import Permission
+from tcs_hil.gate import FOLLOW, HOLD, RELEASE, Permission
+from tcs_hil.gate import FOLLOW_SLOWLY as SLOWLY
+from tcs_hil.judgement import Health, Situation, Verdict
 from tcs_hil.safety_settings import SupervisorSettings
 from tcs_hil.signals import BusCondition, InputState, Measurement, Suspect, TcsState
 
-PERIOD_S = 0.002
-DRIVER_CYCLE_S = 0.010
+PERIOD_S: Final = 0.002
+DRIVER_CYCLE_S: Final = 0.010
 
-WHEEL_BITS = (Suspect.WHEEL_FL, Suspect.WHEEL_FR, Suspect.WHEEL_RL, Suspect.WHEEL_RR)
-FRONTS = Suspect.WHEEL_FL | Suspect.WHEEL_FR
-REARS = Suspect.WHEEL_RL | Suspect.WHEEL_RR
-MOTORS = Suspect.MOTOR_LEFT | Suspect.MOTOR_RIGHT
+WHEEL_BITS: Final = (Suspect.WHEEL_FL, Suspect.WHEEL_FR, Suspect.WHEEL_RL, Suspect.WHEEL_RR)
+FRONTS: Final = Suspect.WHEEL_FL | Suspect.WHEEL_FR
+REARS: Final = Suspect.WHEEL_RL | Suspect.WHEEL_RR
+MOTORS: Final = Suspect.MOTOR_LEFT | Suspect.MOTOR_RIGHT
 
-AWAITING = FaultCode.AWAITING_INPUT
-VALID = InputState.VALID
-NOT_YET = (InputState.NO_DATA, InputState.INIT)
-
-
-class Health(IntEnum):
-    """What has become of one message, by its age and by its end-to-end protection."""
-
-    GOOD = 0
-    LATE = 1
-    LOST = 2
-    CORRUPT = 3
-    AWAITED = 4
-    ABSENT = 5  # the car has no such message, and nobody expects it
-
-
-class Situation(NamedTuple):
-    """What the rules look at in one tick."""
-
-    front: Health
-    rear: Health
-    motor: Health
-    driver: Health
-    suspects: int  # bits of Suspect: implausible
-    unusable: int  # the same, and wheels whose sensor says that it fails
-    bus: BusCondition
-    overrunning: bool = False
-    replaced: bool = False  # something stood in for a law
-    silent: bool = False  # a law could not decide, and nothing stood in for it
-    mute: bool = False  # that has lasted too long
-    broken: bool = False  # our own code raised
+AWAITING: Final = FaultCode.AWAITING_INPUT
+VALID: Final = InputState.VALID
+NOT_ON_BUS: Final = InputState.ABSENT
+NOT_YET: Final = (InputState.NO_DATA, InputState.INIT)
 
 
 class Rule(NamedTuple):
@@ -71,21 +48,24 @@ class Rule(NamedTuple):
     holds: Callable[[Situation], bool]
 
 
-class Verdict(NamedTuple):
-    """State, reason and permission for one tick."""
+GOOD: Final = Health.GOOD
+LATE: Final = Health.LATE
+LOST: Final = Health.LOST
+CORRUPT: Final = Health.CORRUPT
+AWAITED: Final = Health.AWAITED
+ABSENT: Final = Health.ABSENT
+MISSING: Final = frozenset((AWAITED, ABSENT))
 
-    state: TcsState
-    fault_code: FaultCode
-    permission: Permission
-
-
-GOOD, LATE, LOST, CORRUPT, AWAITED, ABSENT = Health
-MISSING = frozenset((AWAITED, ABSENT))
-FAULT, DEGRADED = TcsState.FAULT, TcsState.DEGRADED
-RELEASE, HOLD, SLOWLY = Permission.RELEASE, Permission.HOLD, Permission.FOLLOW_SLOWLY
+INIT: Final = TcsState.INIT
+STANDBY: Final = TcsState.STANDBY
+ACTIVE: Final = TcsState.ACTIVE
+DEGRADED: Final = TcsState.DEGRADED
+FAULT: Final = TcsState.FAULT
+NO_FAULT: Final = FaultCode.NONE
+LAW: Final = Source.LAW
 
 # fmt: off
-RULES: tuple[Rule, ...] = (
+RULES: Final[tuple[Rule, ...]] = (
     Rule(FaultCode.INTERNAL_ERROR, FAULT, RELEASE, lambda s: s.broken),
     Rule(FaultCode.BUS_INTRUDER, FAULT, RELEASE, lambda s: s.bus is BusCondition.INTRUDER),
     Rule(FaultCode.BUS_OFF, FAULT, RELEASE, lambda s: s.bus is BusCondition.BUS_OFF),
@@ -133,7 +113,7 @@ RULES: tuple[Rule, ...] = (
 # fmt: on
 """The state table, worst first.  Whoever raises the torque must be trusted; lowering it is free."""
 
-CALM = Situation(GOOD, GOOD, GOOD, GOOD, 0, 0, BusCondition.OK)
+CALM: Final = Situation(GOOD, GOOD, GOOD, GOOD, 0, 0, BusCondition.OK)
 """Of almost every tick; no rule holds, so none is tried."""
 
 
@@ -149,8 +129,8 @@ class Supervisor:
 
     def __init__(self, settings: SupervisorSettings) -> None:
         self._settings = settings
-        self._before = TcsState.INIT  # state of the tick before
-        self._verdict = Verdict(TcsState.INIT, FaultCode.NONE, RELEASE)
+        self._before: TcsState = INIT  # state of the tick before
+        self._verdict = Verdict(INIT, NO_FAULT, RELEASE)
         self._situation = CALM
         self._trusted_ticks = 0  # without a reason, or followed slowly for one
         self._calm_ticks = 0  # without a reason
@@ -167,24 +147,24 @@ class Supervisor:
 
     def heard(self, proposals: tuple[Proposal, Proposal]) -> Verdict:
         """Judge how the controllers fared; only to be called when they were asked."""
-        undecided = [p.source for p in proposals if not p.decided]
-        silent = Source.LAW in undecided
-        self._silent_ticks = self._silent_ticks + 1 if silent else 0
-        if not undecided:
+        if decided(proposals[0]) and decided(proposals[1]):
+            self._silent_ticks = 0
             return self._verdict
+        silent = any(not decided(p) and p.source is LAW for p in proposals)
+        self._silent_ticks = self._silent_ticks + 1 if silent else 0
         mute = self._silent_ticks > self._settings.tolerated_cycles
-        situation = self._situation._replace(replaced=True, silent=silent, mute=mute)
+        situation = replace(self._situation, replaced=True, silent=silent, mute=mute)
         return self._settle(first_reason(situation))
 
     def internal_error(self) -> Verdict:
         """Our own code broke: hand the torque back and begin again."""
-        return self._settle(first_reason(self._situation._replace(broken=True)))
+        return self._settle(first_reason(replace(self._situation, broken=True)))
 
     def limiting(self) -> Verdict:
         """The gate holds a motor below the request: STANDBY, once it was shown, is ACTIVE."""
-        shown = self._before in (TcsState.STANDBY, TcsState.ACTIVE)
-        if shown and self._verdict.state is TcsState.STANDBY:
-            self._verdict = self._verdict._replace(state=TcsState.ACTIVE)
+        shown = self._before is STANDBY or self._before is ACTIVE
+        if shown and self._verdict.state is STANDBY:
+            self._verdict = replace(self._verdict, state=ACTIVE)
         return self._verdict
 
     def sent(self, overran: bool) -> None:
@@ -205,7 +185,7 @@ class Supervisor:
 
     def _motor_health(self, m: Measurement) -> Health:
         """The one input that a car may do without."""
-        if m.motor_state is InputState.ABSENT:
+        if m.motor_state is NOT_ON_BUS:
             return ABSENT
         return self._health(m.motor_state, m.motor_age_s / PERIOD_S)
 
@@ -230,24 +210,24 @@ class Supervisor:
 
     def _next(self, reason: Rule | None) -> tuple[TcsState, Permission]:
         enough = self._settings.good_ticks_to_recover
-        awaiting = self._before is TcsState.INIT and reason is not None and reason.code is AWAITING
+        awaiting = self._before is INIT and reason is not None and reason.code is AWAITING
         if reason is not None and reason.state is FAULT and not awaiting:
             return FAULT, RELEASE
-        if self._before in (TcsState.INIT, FAULT):
+        if self._before is INIT or self._before is FAULT:
             # STANDBY is shown for a tick before anybody is followed.
             recovered = self._trusted_ticks >= enough
-            return (TcsState.STANDBY if recovered else self._before), RELEASE
+            return (STANDBY if recovered else self._before), RELEASE
         if reason is not None:
             return DEGRADED, reason.permission
         if self._before is DEGRADED and self._calm_ticks < enough:
             return DEGRADED, SLOWLY
-        return TcsState.STANDBY, Permission.FOLLOW
+        return STANDBY, FOLLOW
 
     def _code(self, state: TcsState, reason: Rule | None) -> FaultCode:
         """The reason of a state as long as it lasts, even while the way back is under way."""
-        if state is TcsState.STANDBY:
-            return FaultCode.NONE
-        news = reason is not None and (reason.state is state or state is TcsState.INIT)
+        if state is STANDBY:
+            return NO_FAULT
+        news = reason is not None and (reason.state is state or state is INIT)
         return reason.code if reason is not None and news else self._verdict.fault_code
 
 

@@ -9,16 +9,16 @@ import pytest
 from factories import measurement
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from tcs_hil.control.protocol import Proposal, SolveStatus, Source
 from tcs_hil.fault_codes import MEANINGS, FaultCode
 from tcs_hil.gate import Permission
+from tcs_hil.judgement import Health, Situation, Verdict
 from tcs_hil.signals import BusCondition, InputState, Suspect, TcsState
 from tcs_hil.supervisor import (
     CALM,
     RULES,
-    Health,
-    Situation,
     Supervisor,
     SupervisorSettings,
     first_reason,
@@ -63,27 +63,27 @@ def test_it_leaves_init_after_ten_good_ticks_and_releases_until_standby_was_show
 
 
 def test_before_its_first_tick_it_holds_nobody_back(supervisor: Supervisor) -> None:
-    assert supervisor.limiting() == (INIT, FaultCode.NONE, RELEASE)
+    assert supervisor.limiting() == Verdict(INIT, FaultCode.NONE, RELEASE)
 
 
 def test_our_own_code_may_break_before_anything_was_judged(supervisor: Supervisor) -> None:
-    assert supervisor.internal_error() == (FAULT, FaultCode.INTERNAL_ERROR, RELEASE)
+    assert supervisor.internal_error() == Verdict(FAULT, FaultCode.INTERNAL_ERROR, RELEASE)
 
 
 def test_it_waits_in_init_for_inputs_and_says_so(supervisor: Supervisor) -> None:
     states(supervisor, GOOD, 9)
     verdict = supervisor.judge(measurement(driver_age_s=math.inf))
-    assert verdict == (INIT, FaultCode.AWAITING_INPUT, RELEASE)
+    assert verdict == Verdict(INIT, FaultCode.AWAITING_INPUT, RELEASE)
     assert states(supervisor, GOOD, 10) == [INIT] * 9 + [STANDBY]
 
 
 def test_a_late_input_is_a_reason_to_stay_in_init(supervisor: Supervisor) -> None:
-    assert supervisor.judge(LATE) == (INIT, FaultCode.REAR_SPEED_LATE, RELEASE)
+    assert supervisor.judge(LATE) == Verdict(INIT, FaultCode.REAR_SPEED_LATE, RELEASE)
 
 
 def test_what_is_no_input_takes_init_to_fault(supervisor: Supervisor) -> None:
     verdict = supervisor.judge(measurement(bus=BusCondition.INTRUDER))
-    assert verdict == (FAULT, FaultCode.BUS_INTRUDER, RELEASE)
+    assert verdict == Verdict(FAULT, FaultCode.BUS_INTRUDER, RELEASE)
 
 
 def test_a_car_that_starts_with_one_bad_rear_sensor_is_controlled_slowly(
@@ -91,7 +91,7 @@ def test_a_car_that_starts_with_one_bad_rear_sensor_is_controlled_slowly(
 ) -> None:
     assert states(supervisor, ONE_REAR, 10) == [INIT] * 9 + [STANDBY]
     verdict = supervisor.judge(ONE_REAR)
-    assert verdict == (DEGRADED, FaultCode.ONE_REAR_SPEED_INVALID, SLOWLY)
+    assert verdict == Verdict(DEGRADED, FaultCode.ONE_REAR_SPEED_INVALID, SLOWLY)
 
 
 def test_standby_names_no_fault(supervisor: Supervisor) -> None:
@@ -100,7 +100,7 @@ def test_standby_names_no_fault(supervisor: Supervisor) -> None:
 
 def test_holding_a_motor_turns_standby_into_active_and_letting_go_back(running: Supervisor) -> None:
     assert running.judge(GOOD).state is STANDBY
-    assert running.limiting() == (ACTIVE, FaultCode.NONE, FOLLOW)
+    assert running.limiting() == Verdict(ACTIVE, FaultCode.NONE, FOLLOW)
     assert running.judge(GOOD).state is STANDBY
     assert running.limiting().state is ACTIVE
 
@@ -121,12 +121,12 @@ def test_up_to_two_lost_frames_are_bridged(running: Supervisor, lost_frames: int
 @pytest.mark.parametrize("lost_frames", [3, 10])
 def test_three_to_ten_lost_frames_degrade_and_hold(running: Supervisor, lost_frames: int) -> None:
     verdict = running.judge(measurement(rear_speed_age_s=0.002 * lost_frames))
-    assert verdict == (DEGRADED, FaultCode.REAR_SPEED_LATE, HOLD)
+    assert verdict == Verdict(DEGRADED, FaultCode.REAR_SPEED_LATE, HOLD)
 
 
 def test_more_than_ten_lost_frames_hand_the_torque_back(running: Supervisor) -> None:
     verdict = running.judge(measurement(rear_speed_age_s=0.022))
-    assert verdict == (FAULT, FaultCode.REAR_SPEED_LOST, RELEASE)
+    assert verdict == Verdict(FAULT, FaultCode.REAR_SPEED_LOST, RELEASE)
 
 
 def test_degraded_ends_after_ten_ticks_without_a_reason_and_follows_slowly_until_then(
@@ -134,8 +134,8 @@ def test_degraded_ends_after_ten_ticks_without_a_reason_and_follows_slowly_until
 ) -> None:
     running.judge(LATE)
     verdicts = [running.judge(GOOD) for _ in range(10)]
-    assert verdicts[:9] == [(DEGRADED, FaultCode.REAR_SPEED_LATE, SLOWLY)] * 9
-    assert verdicts[9] == (STANDBY, FaultCode.NONE, FOLLOW)
+    assert verdicts[:9] == [Verdict(DEGRADED, FaultCode.REAR_SPEED_LATE, SLOWLY)] * 9
+    assert verdicts[9] == Verdict(STANDBY, FaultCode.NONE, FOLLOW)
     assert running.limiting().state is STANDBY
 
 
@@ -155,9 +155,9 @@ def test_a_fault_is_left_after_ten_good_ticks_and_keeps_its_reason_until_then(
 ) -> None:
     running.judge(LOST)
     verdicts = [running.judge(GOOD) for _ in range(11)]
-    assert verdicts[:9] == [(FAULT, FaultCode.REAR_SPEED_LOST, RELEASE)] * 9
-    assert verdicts[9] == (STANDBY, FaultCode.NONE, RELEASE)
-    assert verdicts[10] == (STANDBY, FaultCode.NONE, FOLLOW)
+    assert verdicts[:9] == [Verdict(FAULT, FaultCode.REAR_SPEED_LOST, RELEASE)] * 9
+    assert verdicts[9] == Verdict(STANDBY, FaultCode.NONE, RELEASE)
+    assert verdicts[10] == Verdict(STANDBY, FaultCode.NONE, FOLLOW)
 
 
 def test_a_fault_is_left_although_a_rear_sensor_stays_bad_and_keeps_its_own_reason(
@@ -165,7 +165,7 @@ def test_a_fault_is_left_although_a_rear_sensor_stays_bad_and_keeps_its_own_reas
 ) -> None:
     running.judge(LOST)
     verdicts = [running.judge(ONE_REAR) for _ in range(11)]
-    assert verdicts[8] == (FAULT, FaultCode.REAR_SPEED_LOST, RELEASE)
+    assert verdicts[8] == Verdict(FAULT, FaultCode.REAR_SPEED_LOST, RELEASE)
     assert [v.state for v in verdicts[8:]] == [FAULT, STANDBY, DEGRADED]
 
 
@@ -179,12 +179,12 @@ def test_a_fault_is_not_left_while_inputs_are_late(running: Supervisor) -> None:
 def test_a_new_fault_while_in_fault_is_named(running: Supervisor) -> None:
     running.judge(LOST)
     verdict = running.judge(measurement(bus=BusCondition.BUS_OFF))
-    assert verdict == (FAULT, FaultCode.BUS_OFF, RELEASE)
+    assert verdict == Verdict(FAULT, FaultCode.BUS_OFF, RELEASE)
 
 
 def test_an_input_that_starts_anew_is_a_fault_once_the_service_has_run(running: Supervisor) -> None:
     verdict = running.judge(measurement(front_speed_state=InputState.NO_DATA))
-    assert verdict == (FAULT, FaultCode.AWAITING_INPUT, RELEASE)
+    assert verdict == Verdict(FAULT, FaultCode.AWAITING_INPUT, RELEASE)
 
 
 INPUTS = ["front_speed", "rear_speed", "motor", "driver"]
@@ -239,7 +239,7 @@ def test_every_message_and_the_bus_have_their_reaction(
     code: FaultCode,
     permission: Permission,
 ) -> None:
-    assert running.judge(measurement(**changes)) == (state, code, permission)
+    assert running.judge(measurement(**changes)) == Verdict(state, code, permission)
 
 
 @pytest.mark.parametrize("wheel", range(4))
@@ -250,9 +250,9 @@ def test_every_wheel_has_its_reaction_whether_invalid_or_implausible(
     suspect = (Suspect.WHEEL_FL, Suspect.WHEEL_FR, Suspect.WHEEL_RL, Suspect.WHEEL_RR)[wheel]
     name = "FRONT_SPEED" if wheel < 2 else "ONE_REAR_SPEED"
     invalid = running.judge(measurement(wheel_speed_valid=valid))
-    assert invalid == (DEGRADED, FaultCode[f"{name}_INVALID"], SLOWLY)
+    assert invalid == Verdict(DEGRADED, FaultCode[f"{name}_INVALID"], SLOWLY)
     implausible = running.judge(GOOD, suspect)
-    assert implausible == (DEGRADED, FaultCode[f"{name}_IMPLAUSIBLE"], SLOWLY)
+    assert implausible == Verdict(DEGRADED, FaultCode[f"{name}_IMPLAUSIBLE"], SLOWLY)
 
 
 @pytest.mark.parametrize(
@@ -277,7 +277,7 @@ def test_what_is_left_of_the_sensors_decides(
     flags = tuple(bool(flag) for flag in valid)
     verdict = running.judge(measurement(wheel_speed_valid=flags), sum(suspects))
     permission = RELEASE if state is FAULT else SLOWLY
-    assert verdict == (state, FaultCode[code], permission)
+    assert verdict == Verdict(state, FaultCode[code], permission)
 
 
 @pytest.mark.parametrize(
@@ -293,7 +293,7 @@ def test_a_front_wheel_without_sensor_and_motor_is_unknown(
     running: Supervisor, motor: dict[str, Any]
 ) -> None:
     blind = measurement(wheel_speed_valid=(True, False, True, True), **motor)
-    assert running.judge(blind) == (FAULT, FaultCode.FRONT_WHEEL_UNKNOWN, RELEASE)
+    assert running.judge(blind) == Verdict(FAULT, FaultCode.FRONT_WHEEL_UNKNOWN, RELEASE)
 
 
 def test_controllers_that_decide_change_nothing(running: Supervisor) -> None:
@@ -304,7 +304,7 @@ def test_controllers_that_decide_change_nothing(running: Supervisor) -> None:
 
 def test_a_stand_in_for_a_law_is_followed_slowly(running: Supervisor) -> None:
     running.judge(GOOD)
-    assert running.heard(PLAN) == (DEGRADED, FaultCode.CONTROLLER_REPLACED, SLOWLY)
+    assert running.heard(PLAN) == Verdict(DEGRADED, FaultCode.CONTROLLER_REPLACED, SLOWLY)
     assert running.limiting().state is DEGRADED
 
 
@@ -321,7 +321,7 @@ def test_a_stand_in_for_a_law_is_followed_slowly(running: Supervisor) -> None:
 def test_a_silent_controller_holds(running: Supervisor, proposal: Proposal, side: int) -> None:
     running.judge(GOOD)
     proposals = (proposal, LAW[0]) if side == 0 else (LAW[0], proposal)
-    assert running.heard(proposals) == (DEGRADED, FaultCode.CONTROLLER_SILENT, HOLD)
+    assert running.heard(proposals) == Verdict(DEGRADED, FaultCode.CONTROLLER_SILENT, HOLD)
 
 
 def test_controllers_that_are_silent_for_more_than_ten_ticks_are_lost(running: Supervisor) -> None:
@@ -329,8 +329,8 @@ def test_controllers_that_are_silent_for_more_than_ten_ticks_are_lost(running: S
     for _ in range(11):
         running.judge(GOOD)
         verdicts.append(running.heard(SILENT))
-    assert verdicts[:10] == [(DEGRADED, FaultCode.CONTROLLER_SILENT, HOLD)] * 10
-    assert verdicts[10] == (FAULT, FaultCode.CONTROLLER_LOST, RELEASE)
+    assert verdicts[:10] == [Verdict(DEGRADED, FaultCode.CONTROLLER_SILENT, HOLD)] * 10
+    assert verdicts[10] == Verdict(FAULT, FaultCode.CONTROLLER_LOST, RELEASE)
 
 
 def test_a_word_in_between_ends_the_silence(running: Supervisor) -> None:
@@ -342,12 +342,12 @@ def test_a_word_in_between_ends_the_silence(running: Supervisor) -> None:
 
 def test_a_law_without_inputs_is_no_news(running: Supervisor) -> None:
     running.judge(LATE)
-    assert running.heard(SILENT) == (DEGRADED, FaultCode.REAR_SPEED_LATE, HOLD)
+    assert running.heard(SILENT) == Verdict(DEGRADED, FaultCode.REAR_SPEED_LATE, HOLD)
 
 
 def test_a_silent_law_is_worse_than_a_bad_sensor(running: Supervisor) -> None:
     running.judge(ONE_REAR)
-    assert running.heard(SILENT) == (DEGRADED, FaultCode.CONTROLLER_SILENT, HOLD)
+    assert running.heard(SILENT) == Verdict(DEGRADED, FaultCode.CONTROLLER_SILENT, HOLD)
 
 
 def test_the_way_back_begins_when_the_law_decides_again(running: Supervisor) -> None:
@@ -359,7 +359,7 @@ def test_the_way_back_begins_when_the_law_decides_again(running: Supervisor) -> 
 
 def test_an_internal_error_is_a_fault_that_must_be_earned_back(running: Supervisor) -> None:
     running.judge(GOOD)
-    assert running.internal_error() == (FAULT, FaultCode.INTERNAL_ERROR, RELEASE)
+    assert running.internal_error() == Verdict(FAULT, FaultCode.INTERNAL_ERROR, RELEASE)
     assert states(running, GOOD, 10) == [FAULT] * 9 + [STANDBY]
 
 
@@ -389,7 +389,7 @@ def test_a_tick_in_time_begins_the_count_of_overruns_anew(
 def test_the_reason_of_overruns_is_named_until_a_tick_is_in_time(running: Supervisor) -> None:
     for _ in range(5):
         running.sent(overran=True)
-    assert running.judge(GOOD) == (DEGRADED, FaultCode.OVERRUNS, SLOWLY)
+    assert running.judge(GOOD) == Verdict(DEGRADED, FaultCode.OVERRUNS, SLOWLY)
     running.sent(overran=False)
     assert states(running, GOOD, 10) == [DEGRADED] * 9 + [STANDBY]
 
@@ -477,8 +477,8 @@ def test_every_code_but_none_has_exactly_one_rule_and_every_code_a_meaning() -> 
 
 def test_input_and_bus_states_that_differ_in_one_thing_only_have_a_reason() -> None:
     for name, health in product(("front", "rear", "motor", "driver"), Health):
-        reason = first_reason(CALM._replace(**{name: health}))
+        reason = first_reason(replace(CALM, **{name: health}))
         spared = name == "motor" and health is Health.ABSENT
         assert (reason is None) == (health is Health.GOOD or spared)
     for bus in BusCondition:
-        assert (first_reason(CALM._replace(bus=bus)) is None) == (bus is BusCondition.OK)
+        assert (first_reason(replace(CALM, bus=bus)) is None) == (bus is BusCondition.OK)

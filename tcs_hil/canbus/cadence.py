@@ -8,10 +8,12 @@ only when none is.
 
 from __future__ import annotations
 
-GRACE_CYCLES = 3
+from typing import Final
+
+GRACE_CYCLES: Final = 3
 """One on its way, and a delay that changes by as much as two cycles."""
 
-LENIENT_START = GRACE_CYCLES - 1
+LENIENT_START: Final = GRACE_CYCLES - 1
 """Owed after the first frame: it may itself have been late, and the next ones in a hurry."""
 
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Final
 
 from e2e.p02 import e2e_p02_check, e2e_p02_protect
 
-COUNTER_MASK = 0x0F
-DATA_ID_COUNT = 16
+COUNTER_MASK: Final = 0x0F
+DATA_ID_COUNT: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,11 @@ class E2EStatus(IntEnum):
     WRONG_SEQUENCE = 2
     ERROR = 3
     NOT_AVAILABLE = 4  # no frame
+
+
+OK: Final = E2EStatus.OK
+REPEATED: Final = E2EStatus.REPEATED
+ERROR: Final = E2EStatus.ERROR
 
 
 class Protector:
@@ -65,14 +71,14 @@ class Checker:
     def check(self, payload: bytes) -> E2EStatus:
         """Judge the next frame of the message; its values count only when ``OK``."""
         if not e2e_p02_check(payload, self._spec.data_ids):
-            return E2EStatus.ERROR
+            return ERROR
         counter = payload[1] & COUNTER_MASK
         # The counter is taken over whatever it is: after a restart of the sender the next
         # frame in order is good again.
         last, self._last_counter = self._last_counter, counter
-        return E2EStatus.OK if last is None else self._judge_step((counter - last) & COUNTER_MASK)
+        return OK if last is None else self._judge_step((counter - last) & COUNTER_MASK)
 
     def _judge_step(self, delta: int) -> E2EStatus:
         if delta == 0:
-            return E2EStatus.REPEATED
-        return E2EStatus.OK if delta <= self._spec.max_delta_counter else E2EStatus.WRONG_SEQUENCE
+            return REPEATED
+        return OK if delta <= self._spec.max_delta_counter else E2EStatus.WRONG_SEQUENCE

@@ -8,9 +8,15 @@ After AUTOSAR FO PRS E2E Protocol, "E2E state machine", with one window for all 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
-from tcs_hil.canbus.e2e import E2EStatus
+from tcs_hil.canbus.e2e import ERROR, OK, E2EStatus
 from tcs_hil.signals import InputState
+
+NO_DATA: Final = InputState.NO_DATA
+INIT: Final = InputState.INIT
+VALID: Final = InputState.VALID
+INVALID: Final = InputState.INVALID
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,18 +51,18 @@ class StateMachine:
         self._oks = 0
         self._errors = 0
         self._threshold = spec.init
-        self.state = InputState.NO_DATA
+        self.state: InputState = NO_DATA
 
     def add(self, status: E2EStatus) -> None:
         """Count the status of a frame; as in the standard the first one only wakes INIT."""
-        if self.state is not InputState.NO_DATA:
-            self._slide(1, status is E2EStatus.OK, status is E2EStatus.ERROR)
-        elif status is not E2EStatus.ERROR:
-            self.state = InputState.INIT
+        if self.state is not NO_DATA:
+            self._slide(1, status is OK, status is ERROR)
+        elif status is not ERROR:
+            self.state = INIT
 
     def add_missed(self, cycles: int) -> None:
         """Count ``cycles`` >= 1 that were NOT_AVAILABLE, all at once."""
-        if self.state is not InputState.NO_DATA:
+        if self.state is not NO_DATA:
             self._slide(min(cycles, self._spec.size), ok=False, error=False)
 
     def _slide(self, steps: int, ok: bool, error: bool) -> None:
@@ -64,9 +70,9 @@ class StateMachine:
         self._errors = (self._errors << steps | error) & self._mask
         tolerable = self._errors.bit_count() <= self._threshold.max_error
         if tolerable and self._oks.bit_count() >= self._threshold.min_ok:
-            self._enter(InputState.VALID, self._spec.valid)
-        elif not tolerable or self.state is not InputState.INIT:
-            self._enter(InputState.INVALID, self._spec.invalid)
+            self._enter(VALID, self._spec.valid)
+        elif not tolerable or self.state is not INIT:
+            self._enter(INVALID, self._spec.invalid)
 
     def _enter(self, state: InputState, threshold: Threshold) -> None:
         self.state = state

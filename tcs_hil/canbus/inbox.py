@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from tcs_hil.canbus.database import MessageSpec
-from tcs_hil.canbus.e2e import Checker, E2EStatus
+from tcs_hil.canbus.e2e import ERROR, OK, REPEATED, Checker, E2EStatus
 from tcs_hil.canbus.watch import MessageWatch
 from tcs_hil.signals import InputState
 
@@ -60,8 +60,8 @@ class Mailbox:
 
     def put(self, data: bytes, stamp_ns: int) -> E2EStatus:
         """Judge a frame of the right length and keep its values when they are good."""
-        status = self._checker.check(data) if self._checker is not None else E2EStatus.OK
-        if status is E2EStatus.OK:
+        status = self._checker.check(data) if self._checker is not None else OK
+        if status is OK:
             self.values = self._decode(data)
             self.stamp_ns = stamp_ns
         return status
@@ -93,7 +93,7 @@ class WatchedMailbox(Mailbox):
 
     def reject(self, stamp_ns: int) -> None:
         """Count a frame of the wrong length as an error."""
-        self._watch.count(E2EStatus.ERROR, stamp_ns)
+        self._watch.count(ERROR, stamp_ns)
 
     def state(self, now_ns: int) -> InputState:
         """What the protection has come to by ``now_ns``."""
@@ -124,7 +124,7 @@ class Inbox:
             return False
         status = mailbox.put(data, stamp_ns)
         self._count(status)
-        return status is E2EStatus.OK
+        return status is OK
 
     def _count_stranger(self, frame_id: int) -> None:
         if frame_id in self._own_ids:
@@ -133,11 +133,11 @@ class Inbox:
             self.counters.unknown_id += 1
 
     def _count(self, status: E2EStatus) -> None:
-        if status is E2EStatus.OK:
+        if status is OK:
             self.counters.good += 1
-        elif status is E2EStatus.ERROR:
+        elif status is ERROR:
             self.counters.e2e_error += 1
-        elif status is E2EStatus.REPEATED:
+        elif status is REPEATED:
             self.counters.repeated += 1
         else:
             self.counters.wrong_sequence += 1

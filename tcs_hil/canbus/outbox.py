@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from tcs_hil.canbus.database import MessageSpec
 from tcs_hil.canbus.e2e import Protector
@@ -10,7 +10,7 @@ from tcs_hil.canbus.e2e import Protector
 OutgoingFrame: TypeAlias = tuple[int, bytes]
 """Identifier and payload, ready for ``CanPort.send``."""
 
-EARLY_NS = 500_000
+EARLY_NS: Final = 500_000
 """A frame may leave this much before it is due: the wake-up jitter of its sender
 must not turn a cycle of 2 ms into one of 4 ms."""
 

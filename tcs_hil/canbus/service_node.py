@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Final
 
 from tcs_hil.canbus.database import Database
 from tcs_hil.canbus.inbox import Inbox, InboxCounters, Mailbox, Receiver
 from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
 from tcs_hil.signals import BusCondition
+
+HEALTHY: Final = BusCondition.OK
+INTRUDER: Final = BusCondition.INTRUDER
 
 
 class ServiceNode:
@@ -43,4 +47,4 @@ class ServiceNode:
     def _intrusion(self) -> BusCondition:
         """Whether an identifier of ours was heard from somebody else since the last call."""
         heard, self._own_ids_heard = self._own_ids_heard, self.counters.own_id
-        return BusCondition.INTRUDER if self._own_ids_heard > heard else BusCondition.OK
+        return INTRUDER if self._own_ids_heard > heard else HEALTHY

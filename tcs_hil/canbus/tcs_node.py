@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.canbus.ceiling import ceiling_codes
 from tcs_hil.canbus.contract import TCS
@@ -12,7 +13,7 @@ from tcs_hil.canbus.outbox import Outbox, OutgoingFrame
 from tcs_hil.canbus.service_node import ServiceNode
 from tcs_hil.signals import BusCondition, Command, Measurement, RoadEstimate
 
-MS_PER_S = 1e3
+MS_PER_S: Final = 1e3
 
 
 class TcsNode(ServiceNode):
@@ -38,9 +39,10 @@ class TcsNode(ServiceNode):
     @property
     def newest_wheel_stamp_ns(self) -> int | None:
         """Stamp of the newest good wheel-speed frame: where the latency starts."""
-        return max(
-            (s for s in (self._front.stamp_ns, self._rear.stamp_ns) if s is not None), default=None
-        )
+        front_ns, rear_ns = self._front.stamp_ns, self._rear.stamp_ns
+        if front_ns is None or rear_ns is None:
+            return rear_ns if front_ns is None else front_ns
+        return max(front_ns, rear_ns)
 
     def measurement(self, now_ns: int, bus: BusCondition = BusCondition.OK) -> Measurement:
         """Newest value of every input, its age and state at ``now_ns``, and the bus's condition.

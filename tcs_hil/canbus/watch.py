@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tcs_hil.canbus.cadence import Cadence
-from tcs_hil.canbus.e2e import E2EStatus
+from tcs_hil.canbus.e2e import ERROR, REPEATED, E2EStatus
 from tcs_hil.canbus.e2e_state import StateMachine, WindowSpec
 from tcs_hil.signals import InputState
 
@@ -26,8 +26,8 @@ class MessageWatch:
         """Count a frame that came at ``stamp_ns``, judged as ``status``."""
         self._pass_time(stamp_ns)
         expected = self._cadence.arrive(stamp_ns)
-        believable = expected or status is E2EStatus.REPEATED
-        self._machine.add(status if believable else E2EStatus.ERROR)
+        believable = expected or status is REPEATED
+        self._machine.add(status if believable else ERROR)
 
     def state(self, now_ns: int) -> InputState:
         """State at ``now_ns``, every cycle without its frame counted."""

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.control.carried_force import CarriedForce
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.model.vehicle import Vehicle
 
-FASTEST_MPS = 4.0
+FASTEST_MPS: Final = 4.0
 """Above it slip answers torque slowly enough for the law alone."""
 
-SLIP_SHARE = 2.0
-LEAST_SLIP_MPS = 0.2
+SLIP_SHARE: Final = 2.0
+LEAST_SLIP_MPS: Final = 0.2
 """A wheel has broken away beyond both: so many slip references, and so much slip speed."""
 
-FORCE_SHARE = 0.95
-SENT_SHARE = 0.7
+FORCE_SHARE: Final = 0.95
+SENT_SHARE: Final = 0.7
 """What is left of the tyre's force, and at least of the torque at which the wheel broke away:
 the force is seen late, and a tyre near standstill swings on its carcass."""
 
-HOLD_S = 0.25
-GROWTH_S = 0.4
+HOLD_S: Final = 0.25
+GROWTH_S: Final = 0.4
 
 
 class BreakAway:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.model.vehicle import Vehicle
 
-FORCE_S = 0.05
+FORCE_S: Final = 0.05
 
 
 class CarriedForce:

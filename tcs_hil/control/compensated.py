@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Final, Protocol
 
 from tcs_hil.control.break_away import BreakAway
 from tcs_hil.control.entry import Entry
 from tcs_hil.control.integrator import BoundedIntegral
 from tcs_hil.control.plan import Plan
-from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
-from tcs_hil.control.screening import clamp, settled
+from tcs_hil.control.protocol import Proposal, WheelState
+from tcs_hil.control.screening import FAILED, clamp, settled
 from tcs_hil.control.sent import SentTorques
 from tcs_hil.control.swing_guard import SwingGuard
 
@@ -35,9 +35,9 @@ class DelayedOptimiser(Protocol):
         ...
 
 
-GIVEN_BACK_NM = 1.0
+GIVEN_BACK_NM: Final = 1.0
 
-SHORT_DELAY_S = 0.007
+SHORT_DELAY_S: Final = 0.007
 """Behind a longer one the integral counts less: as quick as on a short loop, it swings."""
 
 
@@ -91,7 +91,7 @@ class CompensatedController:
         self._optimiser.roll_forward(*self._sent.pending(wheel.loop_delay_s / self._period_s))
         ceiling_nm = self._ceiling_nm(wheel, torque_ref_nm)
         plan = self._optimiser.plan(self._sent.newest_nm, ceiling_nm)
-        if plan.status is SolveStatus.FAILED:
+        if plan.status is FAILED:
             self._optimiser.reset()  # what failed is no warm start
             return Proposal(torque_ref_nm, plan.status, plan.iterations)
         torque_nm = self._entered(wheel, clamp(plan.inputs.item(0), ceiling_nm), ceiling_nm)

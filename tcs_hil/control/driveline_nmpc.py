@@ -66,7 +66,7 @@ class DrivelineOptimiser:
 
     def _urgency(self) -> float:
         """Factor on the slip's residuals: 1, less at low speed, where slip is touchy."""
-        slip_speed_mps, omega_radps = self._core.x[:2].tolist()
+        slip_speed_mps, omega_radps = self._core.x.item(0), self._core.x.item(1)
         speed_mps: float = omega_radps * self._vehicle.wheel_radius_m - slip_speed_mps
         soft = min(max(speed_mps, SLOWEST_MPS) / self._tuning.soft_speed_mps, 1.0)
         slow_mps, fast_mps = CALM_MPS

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.control.pi import PiController
-from tcs_hil.control.protocol import Controller, Proposal, SolveStatus, Source, WheelState
-from tcs_hil.control.screening import clamp
+from tcs_hil.control.protocol import Controller, Proposal, Source, WheelState
+from tcs_hil.control.screening import BAD_INPUT, FAILED, clamp, decided
+
+LAST_PLAN: Final = Source.LAST_PLAN
+FALLBACK: Final = Source.FALLBACK
 
 
 class FallbackController:
@@ -26,12 +30,12 @@ class FallbackController:
         """Propose the motor torque for the coming period."""
         proposal = self._law.step(wheel, torque_ref_nm)
         planned_nm, self._planned_nm = self._planned_nm, proposal.next_nm
-        if proposal.status is SolveStatus.BAD_INPUT:
+        if proposal.status is BAD_INPUT:
             return proposal
-        if not proposal.decided:
+        if not decided(proposal):
             self._planned_nm = math.nan
             proposal = self._stand_in(proposal, planned_nm, wheel, torque_ref_nm)
-        if proposal.source is not Source.FALLBACK:
+        if proposal.source is not FALLBACK:
             self._fallback.follow(wheel, proposal.torque_nm, torque_ref_nm)
         return proposal
 
@@ -45,7 +49,7 @@ class FallbackController:
         self, failed: Proposal, planned_nm: float, wheel: WheelState, torque_ref_nm: float
     ) -> Proposal:
         if math.isfinite(planned_nm):
-            torque_nm, source = clamp(planned_nm, torque_ref_nm), Source.LAST_PLAN
+            torque_nm, source = clamp(planned_nm, torque_ref_nm), LAST_PLAN
         else:
-            torque_nm, source = self._fallback.step(wheel, torque_ref_nm).torque_nm, Source.FALLBACK
-        return Proposal(torque_nm, SolveStatus.FAILED, failed.iterations, source=source)
+            torque_nm, source = self._fallback.step(wheel, torque_ref_nm).torque_nm, FALLBACK
+        return Proposal(torque_nm, FAILED, failed.iterations, source=source)

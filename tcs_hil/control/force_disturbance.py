@@ -7,7 +7,7 @@ import math
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import tyre_force_n
+from tcs_hil.model.wheel import Tyre
 
 
 class ForceDisturbance:
@@ -19,7 +19,10 @@ class ForceDisturbance:
     """
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
-        self._vehicle = vehicle
+        self._tyre = Tyre(vehicle, math)
+        self._radius_m = vehicle.wheel_radius_m
+        self._epsilon_m2ps2 = vehicle.slip_epsilon_m2ps2
+        self._limit_n = vehicle.wheel_load_n
         self._relaxation_m = settings.default.driveline.tyre_relaxation_m
         self._period_s = settings.period_s
         self._gain = 1.0 - math.exp(-settings.period_s / settings.default.nmpc.observer_time_s)
@@ -28,13 +31,13 @@ class ForceDisturbance:
 
     def update(self, wheel: WheelState) -> float:
         """Learn from one tick; returns the best guess of the tyre's force now, N."""
-        self._modelled_n += self._settling(wheel) * (self._static_n(wheel) - self._modelled_n)
+        static_n = float(self._tyre.force_n(wheel.slip_ratio))
+        self._modelled_n += self._settling(wheel) * (static_n - self._modelled_n)
         if not math.isfinite(wheel.tyre_force_n):
             return self._modelled_n + self.value_n
         surplus_n = wheel.tyre_force_n - self._modelled_n
-        limit_n = self._vehicle.wheel_load_n
         value_n = self.value_n + self._gain * (surplus_n - self.value_n)
-        self.value_n = min(max(value_n, -limit_n), limit_n)
+        self.value_n = min(max(value_n, -self._limit_n), self._limit_n)
         return self._modelled_n + self.value_n
 
     def reset(self) -> None:
@@ -42,11 +45,8 @@ class ForceDisturbance:
         self._modelled_n = 0.0
         self.value_n = 0.0
 
-    def _static_n(self, wheel: WheelState) -> float:
-        return float(tyre_force_n(wheel.slip_ratio, self._vehicle, math))
-
     def _settling(self, wheel: WheelState) -> float:
         """Share of the way to the static force that one period brings."""
-        rim_mps = wheel.wheel_speed_radps * self._vehicle.wheel_radius_m
-        rolling_mps = math.sqrt(rim_mps * rim_mps + self._vehicle.slip_epsilon_m2ps2)
+        rim_mps = wheel.wheel_speed_radps * self._radius_m
+        rolling_mps = math.sqrt(rim_mps * rim_mps + self._epsilon_m2ps2)
         return 1.0 - math.exp(-rolling_mps * self._period_s / self._relaxation_m)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tcs_hil.control.protocol import Controller, Proposal, WheelState
 from tcs_hil.model.provenance import Validity
 
-HAND_OVER_S = 0.05
+HAND_OVER_S: Final = 0.05
 
 
 class GuardedController:

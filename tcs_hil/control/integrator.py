@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-REDUCTION_THRESHOLD_NM = 1.0
+from typing import Final
+
+REDUCTION_THRESHOLD_NM: Final = 1.0
 
 
 class SlipErrorIntegral:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Final
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,15 +14,16 @@ from tcs_hil.control.protocol import SolveStatus
 FloatArray = NDArray[np.float64]
 
 
-class Plan(msgspec.Struct, frozen=True):
+class Plan:
     """Inputs u_0..u_{N-1}; to be trusted unless the status is ``FAILED``.
 
     After ``MAX_ITERATIONS`` they lie in the box and are the best so far.
     """
 
-    inputs: FloatArray  # (N,)
-    status: SolveStatus
-    iterations: int
+    def __init__(self, inputs: FloatArray, status: SolveStatus, iterations: int) -> None:
+        self.inputs: Final = inputs  # (N,)
+        self.status: Final = status
+        self.iterations: Final = iterations
 
     @property
     def next_nm(self) -> float:

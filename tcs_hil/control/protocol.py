@@ -46,9 +46,6 @@ class SolveStatus(IntEnum):
     BAD_INPUT = 3
 
 
-UNDECIDED = (SolveStatus.FAILED, SolveStatus.BAD_INPUT)
-
-
 class Source(IntEnum):
     """Who made a proposal: the law, or what stands in for one that cannot decide."""
 
@@ -71,11 +68,6 @@ class Proposal(msgspec.Struct, frozen=True):
     iterations: int = 0
     next_nm: float = math.nan
     source: Source = Source.LAW
-
-    @property
-    def decided(self) -> bool:
-        """Whether the law has made up its mind by itself."""
-        return self.status not in UNDECIDED and math.isfinite(self.torque_nm)
 
 
 class Controller(Protocol):

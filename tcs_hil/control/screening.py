@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
 from tcs_hil.signals import NO_LIMIT
 
-BEYOND_ANY_WHEEL = 1e6
+BEYOND_ANY_WHEEL: Final = 1e6
 """In any unit of a wheel's state: NaN and infinity fail it, and what passes cannot overflow."""
 
-NOTHING_TO_GIVE = Proposal(0.0)
-UNUSABLE_REQUEST = Proposal(NO_LIMIT, SolveStatus.BAD_INPUT)
+FAILED: Final = SolveStatus.FAILED
+BAD_INPUT: Final = SolveStatus.BAD_INPUT
+NOTHING_TO_GIVE: Final = Proposal(0.0)
+UNUSABLE_REQUEST: Final = Proposal(NO_LIMIT, BAD_INPUT)
 
 
 def settled(wheel: WheelState, torque_ref_nm: float) -> Proposal | None:
@@ -24,8 +27,14 @@ def settled(wheel: WheelState, torque_ref_nm: float) -> Proposal | None:
     if not math.isfinite(torque_ref_nm):
         return UNUSABLE_REQUEST
     if torque_ref_nm < 0.0 or not _plausible(wheel):
-        return Proposal(torque_ref_nm, SolveStatus.BAD_INPUT)
+        return Proposal(torque_ref_nm, BAD_INPUT)
     return NOTHING_TO_GIVE if torque_ref_nm == 0.0 else None
+
+
+def decided(proposal: Proposal) -> bool:
+    """Whether the law has made up its mind by itself."""
+    undecided = proposal.status is FAILED or proposal.status is BAD_INPUT
+    return not undecided and math.isfinite(proposal.torque_nm)
 
 
 def _plausible(wheel: WheelState) -> bool:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-MAX_DELAY_PERIODS = 10.0
+from typing import Final
+
+MAX_DELAY_PERIODS: Final = 10.0
 """Beyond it (20 ms) prediction is no remedy any more."""
 
-_REMEMBERED = int(MAX_DELAY_PERIODS) + 1
+_REMEMBERED: Final = int(MAX_DELAY_PERIODS) + 1
 
 
 class SentTorques:

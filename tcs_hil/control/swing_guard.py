@@ -3,40 +3,41 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.control.carried_force import CarriedForce
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.swings import SwingMean, Swings
 from tcs_hil.model.vehicle import Vehicle
 
-LEAST_SLIP_RATIO = 0.05
-LEAST_SLIP_MPS = 0.06
-LEAST_NM = 20.0
-FED_NM = 10.0
+LEAST_SLIP_RATIO: Final = 0.05
+LEAST_SLIP_MPS: Final = 0.06
+LEAST_NM: Final = 20.0
+FED_NM: Final = 10.0
 """A swing of slip is beyond both of the first, one of torque beyond the third; a torque that moves
 by the last feeds the slip's swings, or at least answers them."""
-TURNS = 3
+TURNS: Final = 3
 """So many turns in a row are a limit cycle that begins."""
 
-STAB_NMPS = 1500.0
+STAB_NMPS: Final = 1500.0
 """A driver who asks for more this fast, or for less, makes the wheel swing himself."""
 
-MEAN_SHARE = 0.95
-CARRIED_SHARE = 0.9
-LEAST_SHARE = 0.6
+MEAN_SHARE: Final = 0.95
+CARRIED_SHARE: Final = 0.9
+LEAST_SHARE: Final = 0.6
 """What is held: of the torque's mean, or of what the tyre carries if that is more; and what is left
 of it at least, whatever a sliding tyre carries."""
-SLIDING_SHARE = 2.0
-LOST_SHARE = 4.0
+SLIDING_SHARE: Final = 2.0
+LOST_SHARE: Final = 4.0
 """Beyond so many slip references a held wheel slides, and is left to the law."""
 
-SETTLING_S = 0.05
-HOLD_S = 0.3
-LONGEST_HOLD_S = 2.0
-LONGER = 1.3
-CALM_S = 2.0
+SETTLING_S: Final = 0.05
+HOLD_S: Final = 0.3
+LONGEST_HOLD_S: Final = 2.0
+LONGER: Final = 1.3
+CALM_S: Final = 2.0
 """A hold is so much longer than the last one, unless so much time has passed since."""
-GROWTH_S = 0.4
+GROWTH_S: Final = 0.4
 
 
 class SwingGuard:

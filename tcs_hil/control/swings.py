@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from typing import Final
 
-SLOWEST_SWING_S = 0.25
+SLOWEST_SWING_S: Final = 0.25
 """A loop that swings slower than at 2 Hz is only slow."""
-LASTING_RATIO = 0.9
+LASTING_RATIO: Final = 0.9
 """A swing smaller than this share of the one a period before dies away."""
 
 

@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.signals import Pair
 
-STILL_S = 0.25
+STILL_S: Final = 0.25
 """A speed that has not changed for so long is one of its own, not an average of the past."""
 
-STANDS_MPS = 0.03
+STANDS_MPS: Final = 0.03
 """Front wheels that turn no faster stand; their motors show it to a fraction of this."""
 
-STANDING_S = 0.1
+STANDING_S: Final = 0.1
 """Time constant in which a standing car learns what its accelerometer feels too much."""
 
-FIRST_EDGES_S = 1.0
+FIRST_EDGES_S: Final = 1.0
 """A car that moves off has met two edges of any rear wheel by then."""
 
-SPEED_GAIN_PER_S = 10.0
-BIAS_GAIN_PER_S2 = 10.0
+SPEED_GAIN_PER_S: Final = 10.0
+BIAS_GAIN_PER_S2: Final = 10.0
 """Both poles near 5 per second: slower than the gaps between edges, faster than grade and pitch."""
 
-MOST_PER_EDGE = 0.5
+MOST_PER_EDGE: Final = 0.5
 
 
 class BodySpeed:
@@ -61,18 +62,24 @@ class BodySpeed:
             return self.value_mps
         rate_mps2 = accel_mps2 - self._bias_mps2
         self.value_mps = max(self.value_mps + self._period_s * rate_mps2, 0.0)
-        for side in range(2):
-            self._stood_s[side] += self._period_s
-            starts = self._seen_mps[side] == 0.0 and self._stood_s[side] < FIRST_EDGES_S
-            still = self._stood_s[side] > STILL_S and not starts
-            news = rear_mps[side] != self._seen_mps[side]
-            if starts and news:
-                self._stood_s[side] = 0.0  # a mean over nobody knows how long
-            elif trusted[side] and (still or news):
-                age_s = 0.0 if still else 0.5 * self._stood_s[side]
-                self._correct(side, rear_mps[side] - (self.value_mps - age_s * rate_mps2))
+        self._hear(0, rear_mps[0], self._seen_mps[0], trusted[0], rate_mps2)
+        self._hear(1, rear_mps[1], self._seen_mps[1], trusted[1], rate_mps2)
         self._seen_mps = rear_mps
         return self.value_mps
+
+    def _hear(
+        self, side: int, rim_mps: float, seen_mps: float, trusted: bool, rate_mps2: float
+    ) -> None:
+        """One wheel's speed, and the one before."""
+        stood_s = self._stood_s[side] = self._stood_s[side] + self._period_s
+        starts = seen_mps == 0.0 and stood_s < FIRST_EDGES_S
+        still = stood_s > STILL_S and not starts
+        news = rim_mps != seen_mps
+        if starts and news:
+            self._stood_s[side] = 0.0  # a mean over nobody knows how long
+        elif trusted and (still or news):
+            age_s = 0.0 if still else 0.5 * stood_s
+            self._correct(side, rim_mps - (self.value_mps - age_s * rate_mps2))
 
     def _stand(self, rear_mps: Pair, accel_mps2: float) -> None:
         """Nothing turns: what is felt is the accelerometer's error and the grade."""

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.estimator.estimate import Estimate
+from tcs_hil.estimator.held import held
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.model.wheel import slip_ratio
 from tcs_hil.signals import FourWheels, Measurement, Pair
-
-REAR = (2, 3)
 
 
 class Estimator:
@@ -25,16 +24,8 @@ class Estimator:
 
     def update(self, measurement: Measurement) -> Estimate:
         """Estimate speed and slip from the newest measurement."""
-        fl, fr, rl, rr = (
-            speed if valid else last
-            for speed, valid, last in zip(
-                measurement.wheel_speed_radps,
-                measurement.wheel_speed_valid,
-                self._wheel_speed_radps,
-                strict=True,
-            )
-        )
-        self._wheel_speed_radps = (fl, fr, rl, rr)
+        self._wheel_speed_radps = held(measurement, self._wheel_speed_radps)
+        fl, fr, _, _ = self._wheel_speed_radps
         speed_mps = self._body_speed_mps(measurement)
         self.newest = Estimate(
             speed_mps,
@@ -50,8 +41,12 @@ class Estimator:
 
     def _body_speed_mps(self, measurement: Measurement) -> float:
         """Mean of the rear wheels that vouch for themselves; both held when neither does."""
-        trusted = [i for i in REAR if measurement.wheel_speed_valid[i]] or list(REAR)
-        mean_radps = sum(self._wheel_speed_radps[i] for i in trusted) / len(trusted)
+        _, _, left_radps, right_radps = self._wheel_speed_radps
+        _, _, left_valid, right_valid = measurement.wheel_speed_valid
+        if left_valid == right_valid:
+            mean_radps = (left_radps + right_radps) / 2.0
+        else:
+            mean_radps = left_radps if left_valid else right_radps
         return mean_radps * self._vehicle.wheel_radius_m
 
     def _wheel(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
@@ -12,7 +14,7 @@ FloatArray = NDArray[np.float64]
 
 PROCESS_STD = (0.1, 0.1, 2e-5, 20.0)
 """Per tick: wheel and motor speed rad/s, twist rad, tyre torque Nm (a random walk)."""
-MOTOR_SPEED_STD_RADPS = 0.05
+MOTOR_SPEED_STD_RADPS: Final = 0.05
 """On the wheel side of the gear: noise, resolution and what the shaft does besides the model."""
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import tyre_force_n
+from tcs_hil.model.wheel import Tyre
 
-LEARNING_S = 0.05
-FORGETTING_S = 2.0
-TELLING_SLIP = 0.06
+LEARNING_S: Final = 0.05
+FORGETTING_S: Final = 2.0
+TELLING_SLIP: Final = 0.06
 """Below it a tyre's force tells its stiffness rather than its friction."""
 
 
@@ -21,7 +22,8 @@ class FrictionEstimate:
     """
 
     def __init__(self, vehicle: Vehicle, period_s: float) -> None:
-        self._vehicle = vehicle
+        self._tyre = Tyre(vehicle, math)
+        self._friction_ratio = vehicle.friction_ratio
         self._learn = 1.0 - math.exp(-period_s / LEARNING_S)
         self._keep = math.exp(-period_s / FORGETTING_S)
         self.value_ratio = vehicle.friction_ratio  # until something is known
@@ -33,7 +35,7 @@ class FrictionEstimate:
         telling = min(max(slip_ratio / TELLING_SLIP - 0.5, 0.0) * 2.0, 1.0)
         if telling == 0.0 or not math.isfinite(force_n):
             return
-        full_n = tyre_force_n(slip_ratio, self._vehicle, math) / self._vehicle.friction_ratio
+        full_n = self._tyre.force_n(slip_ratio) / self._friction_ratio
         gain = self._learn * telling
         self.value_ratio += gain * (min(max(force_n / full_n, 0.0), 1.5) - self.value_ratio)
         self.confidence_ratio += gain * (1.0 - self.confidence_ratio)

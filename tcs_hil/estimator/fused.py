@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.estimator.body_speed import BodySpeed
 from tcs_hil.estimator.estimate import Estimate
+from tcs_hil.estimator.held import held
 from tcs_hil.estimator.loop_delay import LoopDelay
 from tcs_hil.estimator.side import Side
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.signals import FourWheels, Measurement, Pair, RoadEstimate
 
-MOTOR_PATIENCE_S = 0.005
+MOTOR_PATIENCE_S: Final = 0.005
 """A motor state older than two cycles is no measurement; the wheel's own sensor serves."""
 
 
@@ -35,7 +37,7 @@ class FusedEstimator:
 
     def update(self, measurement: Measurement) -> Estimate:
         """Estimate speeds, slip, shaft twist, tyre force, friction and delay."""
-        self._hold_invalid(measurement)
+        self._wheel_speed_radps = held(measurement, self._wheel_speed_radps)
         delay_s = self._delay.heard(measurement.motor_torque_nm)
         speed_mps = self._body_speed_mps(measurement)
         wheels = (
@@ -55,15 +57,6 @@ class FusedEstimator:
         """Hear, at the tick's end, what each motor may give of what the driver asks of it."""
         self._delay.sent(torque_nm, request_nm)
 
-    def _hold_invalid(self, m: Measurement) -> None:
-        fl, fr, rl, rr = (
-            speed if valid else last
-            for speed, valid, last in zip(
-                m.wheel_speed_radps, m.wheel_speed_valid, self._wheel_speed_radps, strict=True
-            )
-        )
-        self._wheel_speed_radps = (fl, fr, rl, rr)
-
     def _body_speed_mps(self, m: Measurement) -> float:
         accel_mps2 = m.accel_x_mps2
         if not math.isfinite(accel_mps2):
@@ -71,8 +64,11 @@ class FusedEstimator:
         radius_m = self._vehicle.wheel_radius_m
         _, _, left_radps, right_radps = self._wheel_speed_radps
         rear_mps = (left_radps * radius_m, right_radps * radius_m)
-        driven_mps = max(abs(speed) for speed in self._driven_radps(m)) * radius_m
-        return self._body.update(rear_mps, m.wheel_speed_valid[2:], accel_mps2, driven_mps)
+        front_left_radps, front_right_radps = self._driven_radps(m)
+        driven_mps = max(abs(front_left_radps), abs(front_right_radps)) * radius_m
+        _, _, left_valid, right_valid = m.wheel_speed_valid
+        trusted = (left_valid, right_valid)
+        return self._body.update(rear_mps, trusted, accel_mps2, driven_mps)
 
     def _driven_radps(self, m: Measurement) -> Pair:
         """The front wheels through their motors, which show the first turn, or by their sensors."""

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.control.sent import MAX_DELAY_PERIODS
 from tcs_hil.control.settings import DelaySettings
 from tcs_hil.signals import Pair
 
-CANDIDATES = int(MAX_DELAY_PERIODS) + 1
-WINDOW_TICKS = 60.0
-TELLING_NM = 5.0
+CANDIDATES: Final = int(MAX_DELAY_PERIODS) + 1
+WINDOW_TICKS: Final = 60.0
+TELLING_NM: Final = 5.0
 """Travel of the torque, over the candidates' time, that outweighs the noise of its measurement."""
-SLEW = 0.06
+SLEW: Final = 0.06
 """The estimate moves by at most so many seconds per second."""
-SETTLED_TICKS = 25
+SETTLED_TICKS: Final = 25
 """A motor must have been held so long that what the driver asked before is forgotten."""
 
 
@@ -40,18 +41,19 @@ class LoopDelay:
 
     def sent(self, torque_nm: Pair, request_nm: Pair) -> None:
         """Hear what each motor was allowed at the end of a tick."""
-        for side, (torque, request) in enumerate(zip(torque_nm, request_nm, strict=True)):
+        for side in (0, 1):
             history = self._lagged_nm[side]
-            history.insert(0, history[0] + self._lag_gain * (torque - history[0]))
+            history.insert(0, history[0] + self._lag_gain * (torque_nm[side] - history[0]))
             history.pop()
-            self._held_ticks[side] = self._held_ticks[side] + 1 if torque < request else 0
+            held = torque_nm[side] < request_nm[side]
+            self._held_ticks[side] = self._held_ticks[side] + 1 if held else 0
 
     def heard(self, echoed_nm: Pair) -> float:
         """Learn from the torques on the bus at the beginning of a tick; the delay now, s."""
         if not self._settings.measured:
             return self.value_s
-        learnt = [self._learn(side, echoed_nm[side]) for side in range(2)]
-        if any(learnt):
+        # Both learn, whether or not the first of them does.
+        if self._learn(0, echoed_nm[0]) | self._learn(1, echoed_nm[1]):
             step_s = SLEW * self._period_s
             surplus_s = self._best_s() - self.value_s
             self.value_s += min(max(surplus_s, -step_s), step_s)
@@ -59,12 +61,12 @@ class LoopDelay:
 
     def _learn(self, side: int, echoed_nm: float) -> bool:
         history = self._lagged_nm[side]
-        if self._held_ticks[side] < SETTLED_TICKS or max(history) - min(history) < TELLING_NM:
+        if self._held_ticks[side] < SETTLED_TICKS or _travel_nm(history) < TELLING_NM:
             return False
-        self._mean_square = [
-            mean + ((torque - echoed_nm) ** 2 - mean) / WINDOW_TICKS
-            for mean, torque in zip(self._mean_square, history, strict=True)
-        ]
+        mean_square = self._mean_square
+        for delay in range(CANDIDATES):
+            miss_nm, mean = history[delay] - echoed_nm, mean_square[delay]
+            mean_square[delay] = mean + (miss_nm * miss_nm - mean) / WINDOW_TICKS
         return True
 
     def _best_s(self) -> float:
@@ -76,3 +78,11 @@ class LoopDelay:
         bend = before - 2.0 * at + after
         fraction = 0.5 * (before - after) / bend if bend > 0.0 else 0.0
         return (best + fraction) * self._period_s
+
+
+def _travel_nm(history_nm: list[float]) -> float:
+    """From its lowest to its highest, in one pass."""
+    lowest_nm = highest_nm = history_nm[0]
+    for torque_nm in history_nm:
+        lowest_nm, highest_nm = min(lowest_nm, torque_nm), max(highest_nm, torque_nm)
+    return highest_nm - lowest_nm

@@ -46,10 +46,24 @@ def slip_ratio(s: Any, omega: Any, vehicle: Vehicle) -> Any:
     return s * rim_speed / (rim_speed * rim_speed + vehicle.slip_epsilon_m2ps2)
 
 
+class Tyre:
+    """One vehicle's simplified Magic Formula, Eq. (tire_model), its parameters read once."""
+
+    def __init__(self, vehicle: Vehicle, functions: Functions = np) -> None:
+        # Of any type: for CasADi the parameters are symbols too.
+        self._peak_n: Any = vehicle.friction_ratio * vehicle.wheel_load_n * vehicle.tyre_d
+        self._c: Any = vehicle.tyre_c
+        self._b: Any = vehicle.tyre_b
+        self._sin, self._atan = functions.sin, functions.atan
+
+    def force_n(self, kappa: Any) -> Any:
+        """Longitudinal tyre force in N."""
+        return self._peak_n * self._sin(self._c * self._atan(self._b * kappa))
+
+
 def tyre_force_n(kappa: Any, vehicle: Vehicle, functions: Functions = np) -> Any:
-    """Longitudinal tyre force in N by the simplified Magic Formula, Eq. (tire_model)."""
-    peak_n = vehicle.friction_ratio * vehicle.wheel_load_n * vehicle.tyre_d
-    return peak_n * functions.sin(vehicle.tyre_c * functions.atan(vehicle.tyre_b * kappa))
+    """Longitudinal tyre force in N of a tyre that is asked once."""
+    return Tyre(vehicle, functions).force_n(kappa)
 
 
 def slip_dynamics(

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.plausibility.trace import Duration, SpeedTrace
 
-APART_RATIO, APART_MPS = 0.1, 0.8  # the shaft twists, and a ring tells late
-SLOWER_RATIO, SLOWER_MPS = 0.03, 0.2  # than the rolling wheels no driven one is
-STEP_MPS = 0.5  # by which the two do not part in one tick
-STOOD_M = 0.1  # way on which a sensor that works has moved
-FLUTTER_NM = 40.0  # which no motor changes by tick after tick
-MUTE_RATIO, MUTE_NM = 0.1, 50.0  # gives so little of so much it may give
+APART_RATIO: Final = 0.1  # the shaft twists, and a ring tells late
+APART_MPS: Final = 0.8
+SLOWER_RATIO: Final = 0.03  # than the rolling wheels no driven one is
+SLOWER_MPS: Final = 0.2
+STEP_MPS: Final = 0.5  # by which the two do not part in one tick
+STOOD_M: Final = 0.1  # way on which a sensor that works has moved
+FLUTTER_NM: Final = 40.0  # which no motor changes by tick after tick
+MUTE_RATIO: Final = 0.1  # gives so little of so much it may give
+MUTE_NM: Final = 50.0
 
-APART_S, HEALED_S, RECENT_S = 0.05, 0.1, 0.2
-FLUTTER_S, MUTE_S = 0.02, 0.1
+APART_S: Final = 0.05
+HEALED_S: Final = 0.1
+RECENT_S: Final = 0.2
+FLUTTER_S: Final = 0.02
+MUTE_S: Final = 0.1
 
 
 class DrivenWheel:

@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.plausibility.trace import NEAR_MPS, NEAR_RATIO, Duration, SpeedTrace, near
 from tcs_hil.signals import Pair
 
-RATE_MPS2 = 16.0  # beyond it nothing that only rolls gains or loses speed
-CURVE_RATIO, CURVE_M2PS2 = 0.35, 16.0  # left from right: tightest curve; lateral m/s2 times track
-FASTER_RATIO, FASTER_MPS = 0.1, 0.5  # than the fastest driven wheel
-ASTRAY_MPS = 0.7  # of an acceleration that two wheels contradict
-SPEED_MAX_MPS, ACCEL_MAX_MPS2 = 110.0, 20.0  # of any car
+RATE_MPS2: Final = 16.0  # beyond it nothing that only rolls gains or loses speed
+CURVE_RATIO: Final = 0.35  # left from right, in the tightest curve
+CURVE_M2PS2: Final = 16.0  # the same: lateral acceleration times track
+FASTER_RATIO: Final = 0.1  # than the fastest driven wheel
+FASTER_MPS: Final = 0.5
+ASTRAY_MPS: Final = 0.7  # of an acceleration that two wheels contradict
+SPEED_MAX_MPS: Final = 110.0  # of any car
+ACCEL_MAX_MPS2: Final = 20.0
 
-APART_S, FASTER_S, HEALED_S = 0.05, 0.1, 0.1
-BLIND_S = 1.0  # the accelerometer alone carries a speed no longer
-BLIND_MPS2 = 0.5  # and this is how fast it grows uncertain
-PARDON_S = 1.0  # an accelerometer is then tried again
+APART_S: Final = 0.05
+FASTER_S: Final = 0.1
+HEALED_S: Final = 0.1
+BLIND_S: Final = 1.0  # the accelerometer alone carries a speed no longer
+BLIND_MPS2: Final = 0.5  # and this is how fast it grows uncertain
+PARDON_S: Final = 1.0  # an accelerometer is then tried again
 
-MOVING_MPS = 3.0
-IDLE_NM = 10.0
-SPEED_GAIN_PER_S, BIAS_GAIN_PER_S2 = 10.0, 10.0
+MOVING_MPS: Final = 3.0
+IDLE_NM: Final = 10.0
+SPEED_GAIN_PER_S: Final = 10.0
+BIAS_GAIN_PER_S2: Final = 10.0
 
 
 class RollingWheel:
@@ -95,7 +102,8 @@ class RollingAxle:
 
     def compare(self, driven_mps: float, motors_nm: Pair) -> None:
         """Hear the faster one of the driven wheels, and what the motors give."""
-        least_nm, most_nm = min(motors_nm), max(motors_nm)
+        left_nm, right_nm = motors_nm
+        least_nm, most_nm = min(left_nm, right_nm), max(left_nm, right_nm)
         driving = least_nm > IDLE_NM
         most_mps = (1.0 + FASTER_RATIO) * driven_mps + FASTER_MPS if driving else math.inf
         self.left.compare(max(most_mps, MOVING_MPS))

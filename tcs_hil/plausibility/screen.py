@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from msgspec.structs import replace
 
@@ -12,11 +13,14 @@ from tcs_hil.plausibility.rolling import RollingAxle
 from tcs_hil.plausibility.trace import Duration
 from tcs_hil.signals import FourWheels, InputState, Measurement, Pair, Suspect
 
-REQUEST_MAX_SHARE = 1.25  # of what a motor can give
-EXCESS_RATIO, EXCESS_NM, EXCESS_S = 0.05, 15.0, 0.1
-PATIENCE_S = 0.005  # two cycles: what is older says nothing of the present
+REQUEST_MAX_SHARE: Final = 1.25  # of what a motor can give
+EXCESS_RATIO: Final = 0.05
+EXCESS_NM: Final = 15.0
+EXCESS_S: Final = 0.1
+PATIENCE_S: Final = 0.005  # two cycles: what is older says nothing of the present
 
-MOTORS = Suspect.MOTOR_LEFT | Suspect.MOTOR_RIGHT
+VALID: Final = InputState.VALID
+MOTORS: Final = Suspect.MOTOR_LEFT | Suspect.MOTOR_RIGHT
 UNKNOWN = (math.nan, math.nan)
 
 
@@ -44,8 +48,8 @@ class Plausibility:
         # The sum is unknown unless both are.
         known = not math.isnan(left_mps + right_mps)
         axle.compare(max(left_mps, right_mps) if known else math.nan, given_nm)
-        for torque, given, allowed in zip(self._torques, given_nm, self._allowed_nm, strict=True):
-            torque.take(given, allowed)
+        self._torques[0].take(given_nm[0], self._allowed_nm[0])
+        self._torques[1].take(given_nm[1], self._allowed_nm[1])
         return self._bits(self._denied(given_nm, m.driver_torque_nm))
 
     def sent(self, allowed_nm: Pair) -> None:
@@ -67,7 +71,7 @@ class Plausibility:
 
     def _motors(self, m: Measurement) -> tuple[Pair, Pair]:
         """Speeds that the rims have if they turn with their motors, and the motors' torques."""
-        if m.motor_age_s > PATIENCE_S or m.motor_state is not InputState.VALID:
+        if m.motor_age_s > PATIENCE_S or m.motor_state is not VALID:
             return UNKNOWN, UNKNOWN
         left_radps, right_radps = m.motor_speed_radps
         return (abs(left_radps) * self._rim_m, abs(right_radps) * self._rim_m), m.motor_torque_nm
@@ -80,7 +84,7 @@ class Plausibility:
             given_left > share * max(left, 0.0) + EXCESS_NM
             or given_right > share * max(right, 0.0) + EXCESS_NM
         )
-        return excess or max(asked_nm) > self._most_nm
+        return excess or max(left, right) > self._most_nm
 
     def _bits(self, denied: bool) -> int:
         left, right, axle = self._left, self._right, self._axle

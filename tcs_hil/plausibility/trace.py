@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
-EDGE_RATIO, EDGE_MPS = 0.06, 0.1  # edges of a toothed ring that are off their place
-RING_M = 0.2  # way in which every ring shows an edge
-NEAR_RATIO, NEAR_MPS = 0.05, 0.4  # of speeds that agree
+EDGE_RATIO: Final = 0.06  # edges of a toothed ring that are off their place
+EDGE_MPS: Final = 0.1
+RING_M: Final = 0.2  # way in which every ring shows an edge
+NEAR_RATIO: Final = 0.05  # of speeds that agree
+NEAR_MPS: Final = 0.4
 
 
 class Duration:

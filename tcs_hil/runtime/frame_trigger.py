@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tcs_hil.canbus.port import Frame
 from tcs_hil.runtime.clock import Clock
 from tcs_hil.runtime.seams import Port
-from tcs_hil.runtime.trigger import Tick
+from tcs_hil.runtime.tick import Tick
 
 
 class FrameTrigger:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from typing import Final
 
 from tcs_hil.canbus.port import Frame
 from tcs_hil.runtime.clock import Clock
 from tcs_hil.runtime.seams import Bench, Port
-from tcs_hil.runtime.trigger import Tick
+from tcs_hil.runtime.tick import Tick
 
-STOP_POLL_S = 0.1
-BACKLOG_FRAMES = 1024  # a bus on which no bench ever ticks must not grow the process
-FOREVER_NS = 2**63 - 1
+STOP_POLL_S: Final = 0.1
+BACKLOG_FRAMES: Final = 1024  # a bus on which no bench ever ticks must not grow the process
+FOREVER_NS: Final = 2**63 - 1
 
 
 class LockstepTrigger:

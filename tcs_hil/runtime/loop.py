@@ -7,14 +7,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from tcs_hil.canbus.port import Frame
-from tcs_hil.pipeline import Trace
 from tcs_hil.runtime.clock import Clock
-from tcs_hil.runtime.record import Insight, Pass, Record, Stamps, record
+from tcs_hil.runtime.record import Record, record
 from tcs_hil.runtime.seams import Node, Pipeline, Port
 from tcs_hil.runtime.stopwatch import TimedController
+from tcs_hil.runtime.tick import Insight, Pass, Stamps, Tick
 from tcs_hil.runtime.transitions import TransitionLog
-from tcs_hil.runtime.trigger import Tick, Trigger
+from tcs_hil.runtime.trigger import Trigger
 from tcs_hil.signals import Command, Measurement
+from tcs_hil.trace import Trace
 
 logger = logging.getLogger(__name__)
 
@@ -36,9 +37,13 @@ class Loop:
     clock: Clock
     write: Callable[[Record], None]
     healthy: Callable[[int], None]
-    overruns: int = field(default=0, init=False)
-    failures: int = field(default=0, init=False)
-    transitions: TransitionLog = field(default_factory=TransitionLog, init=False)
+    overruns: int = field(init=False)
+    failures: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.overruns = 0
+        self.failures = 0
+        self._transitions = TransitionLog()
 
     def run(self, stop_requested: Callable[[], bool]) -> None:
         """Tick until asked to stop.  A lost interface is the port's to count and to reopen."""
@@ -55,9 +60,10 @@ class Loop:
         command = self._decide(measurement)
         stepped_ns = self.clock.now_ns()
         self._send(command, tick)
-        stamps = Stamps(received_ns, stepped_ns, self.clock.now_ns())
-        failed = self.failures > failures
-        self._account(Pass(tick, stamps, len(frames), measurement, command, failed))
+        sent_ns = self.clock.now_ns()
+        stamps = Stamps(received_ns, stepped_ns, sent_ns)
+        failed, overrun = self.failures > failures, sent_ns > tick.deadline_ns
+        self._account(Pass(tick, stamps, len(frames), measurement, command, failed, overrun))
 
     def _drain(self, frames: Sequence[Frame], tick: Tick) -> Measurement:
         for frame in frames:
@@ -84,7 +90,7 @@ class Loop:
         elif not made.failed:
             self.healthy(made.stamps.sent_ns)
         self.pipeline.sent(made.overrun)
-        self.transitions.note(made.command, made.stamps.sent_ns)
+        self._transitions.note(made.command, made.stamps.sent_ns)
         trace = self.pipeline.trace
         if trace is not None:
             self.write(record(made, self._insight(trace)))

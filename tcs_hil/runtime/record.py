@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple
+from typing import Final
 
-from tcs_hil.canbus.inbox import InboxCounters
-from tcs_hil.canbus.port import PortCounters
-from tcs_hil.pipeline import Trace
 from tcs_hil.runtime.recording import FieldCode
-from tcs_hil.runtime.trigger import Tick
-from tcs_hil.signals import Command, Measurement
+from tcs_hil.runtime.tick import Insight, Pass
 
-NO_LATENCY = -1
+NO_LATENCY: Final = -1
 
-FIELDS = {
+FIELDS: Final = {
     "number": "q",  # periods since the start, or the bench's tick number
     "scheduled_ns": "q",
     "wake_ns": "q",
@@ -70,61 +66,38 @@ FIELDS = {
 }
 """Name and ``struct`` code of every value; 64 bits where a value could overflow a narrower one."""
 
-PACKER = struct.Struct("<" + "".join(FIELDS.values()))
+PACKER: Final = struct.Struct("<" + "".join(FIELDS.values()))
 _NUMPY_CODES: dict[str, FieldCode] = {"q": "<i8", "d": "<f8", "B": "|u1", "?": "|b1"}
-LAYOUT = [(name, _NUMPY_CODES[code]) for name, code in FIELDS.items()]
+LAYOUT: Final = [(name, _NUMPY_CODES[code]) for name, code in FIELDS.items()]
 
 Record = tuple[float, ...]
 
 
-class Stamps(NamedTuple):
-    """When each stage of a tick was finished, CLOCK_MONOTONIC."""
-
-    received_ns: int
-    stepped_ns: int
-    sent_ns: int
-
-
-class Pass(NamedTuple):
-    """One tick, made."""
-
-    tick: Tick
-    stamps: Stamps
-    frames: int
-    measurement: Measurement
-    command: Command
-    failed: bool
-
-    @property
-    def overrun(self) -> bool:
-        """Whether the slack was negative."""
-        return self.stamps.sent_ns > self.tick.deadline_ns
-
-
-class Insight(NamedTuple):
-    """What the parts of the service know about the tick just made."""
-
-    trace: Trace
-    solve_ns: tuple[int, int]
-    wheel_stamp_ns: int | None
-    counters: PortCounters
-    inbox: InboxCounters
-
-
 def record(made: Pass, insight: Insight) -> Record:
     """Return the values in the order of ``FIELDS``; every one of them packs."""
-    tick, m, command = made.tick, made.measurement, made.command
-    left, right = insight.trace.proposals
+    tick, stamps = made.tick, made.stamps
+    m, command, trace = made.measurement, made.command, insight.trace
+    left, right = trace.proposals
     counters, inbox = insight.counters, insight.inbox
+    # Unpacked by hand: compiled, a display of starred values is a list made into a tuple.
+    solve_left_ns, solve_right_ns = insight.solve_ns
+    fl_radps, fr_radps, rl_radps, rr_radps = m.wheel_speed_radps
+    slip_left, slip_right = command.slip_ratio
+    driver_left_nm, driver_right_nm = m.driver_torque_nm
+    motor_left_nm, motor_right_nm = m.motor_torque_nm
+    motor_left_radps, motor_right_radps = m.motor_speed_radps
     return (
         tick.number,
         tick.scheduled_ns,
         tick.wake_ns,
-        *made.stamps,
+        stamps.received_ns,
+        stamps.stepped_ns,
+        stamps.sent_ns,
         tick.now_ns,
         insight.wheel_stamp_ns or 0,
         latency_ns(made, insight.wheel_stamp_ns),
-        *insight.solve_ns,
+        solve_left_ns,
+        solve_right_ns,
         tick.skipped,
         made.frames,
         counters.rx,
@@ -140,22 +113,30 @@ def record(made: Pass, insight: Insight) -> Record:
         m.rear_speed_age_s,
         m.motor_age_s,
         m.driver_age_s,
-        insight.trace.estimate.vehicle_speed_mps,
-        *m.wheel_speed_radps,
-        *command.slip_ratio,
-        *m.driver_torque_nm,
-        *m.motor_torque_nm,
-        *m.motor_speed_radps,
+        trace.estimate.vehicle_speed_mps,
+        fl_radps,
+        fr_radps,
+        rl_radps,
+        rr_radps,
+        slip_left,
+        slip_right,
+        driver_left_nm,
+        driver_right_nm,
+        motor_left_nm,
+        motor_right_nm,
+        motor_left_radps,
+        motor_right_radps,
         left.torque_nm,
         right.torque_nm,
-        *command.limits,
+        command.limits.left_nm,
+        command.limits.right_nm,
         left.status,
         right.status,
         command.state,
         command.fault_code,
         command.controller,
         m.bus,
-        insight.trace.suspects,
+        trace.suspects,
         made.overrun,
         made.failed,
     )

@@ -7,8 +7,8 @@ from typing import Protocol
 
 from tcs_hil.canbus.inbox import InboxCounters
 from tcs_hil.canbus.port import Frame, PortCounters
-from tcs_hil.pipeline import Trace
 from tcs_hil.signals import BusCondition, Command, Measurement
+from tcs_hil.trace import Trace
 
 
 class Port(Protocol):

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import logging
 from collections import deque
+from typing import Final
 
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.signals import Command, TcsState
 
 logger = logging.getLogger(__name__)
 
-MOST_LINES = 10
-WITHIN_NS = 1_000_000_000
+STANDBY: Final = TcsState.STANDBY
+ACTIVE: Final = TcsState.ACTIVE
+
+MOST_LINES: Final = 10
+WITHIN_NS: Final = 1_000_000_000
 
 Condition = tuple[TcsState, int]
 
@@ -32,7 +36,7 @@ class TransitionLog:
 
     def note(self, command: Command, now_ns: int) -> None:
         """Hear what a tick has decided."""
-        state = TcsState.STANDBY if command.state is TcsState.ACTIVE else command.state
+        state = STANDBY if command.state is ACTIVE else command.state
         condition = (state, command.fault_code)
         if condition != self._seen:
             self._seen = condition

@@ -3,27 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from tcs_hil.canbus.port import Frame
 from tcs_hil.runtime.clock import Clock
 from tcs_hil.runtime.seams import Port
-
-
-class Tick(NamedTuple):
-    """One pass of the loop; all times in ns.
-
-    ``now_ns`` is the time decisions are made with: the bench's clock in
-    lockstep, else ``wake_ns``.  The other times are CLOCK_MONOTONIC.  ``number``
-    counts periods since the start, so ``skipped`` ones leave a gap.
-    """
-
-    number: int
-    scheduled_ns: int
-    wake_ns: int
-    now_ns: int
-    deadline_ns: int
-    skipped: int
+from tcs_hil.runtime.tick import Tick
 
 
 class Trigger(Protocol):

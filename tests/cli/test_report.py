@@ -45,9 +45,9 @@ def test_the_table_names_the_run_and_what_was_lost(recording: Path) -> None:
 
 def test_a_bus_that_was_never_understood_is_told_with_its_likely_cause(tmp_path: Path) -> None:
     made = made_pass()
-    deaf = made._replace(measurement=replace(made.measurement, bus=BusCondition.ERROR_PASSIVE))
+    deaf = replace(made, measurement=replace(made.measurement, bus=BusCondition.ERROR_PASSIVE))
     with FlightRecorder(tmp_path / "flight", RUN, 100) as recorder:
-        recorder.write(record(deaf, insight()._replace(counters=PortCounters(error_frames=200))))
+        recorder.write(record(deaf, replace(insight(), counters=PortCounters(error_frames=200))))
     assert "bit rate mismatch?" in report(tmp_path / "flight").output
 
 

@@ -5,6 +5,7 @@ import pytest
 from tcs_hil.control.fallback import FallbackController
 from tcs_hil.control.pi import PiController
 from tcs_hil.control.protocol import Proposal, SolveStatus, Source, WheelState
+from tcs_hil.control.screening import decided
 from tcs_hil.control.settings import ControlSettings
 
 FAILED, BAD_INPUT = SolveStatus.FAILED, SolveStatus.BAD_INPUT
@@ -51,7 +52,7 @@ def test_a_failed_solve_is_bridged_by_the_last_plan_once_and_then_by_the_pi(
     answers = [controller.step(AT_REFERENCE, REQUEST_NM) for _ in range(3)]
     assert [a.source for a in answers] == [Source.LAST_PLAN, Source.FALLBACK, Source.FALLBACK]
     assert {(a.status, a.iterations) for a in answers} == {(FAILED, 9)}
-    assert not any(answer.decided for answer in answers)
+    assert not any(decided(answer) for answer in answers)
 
 
 def test_the_pi_goes_on_from_the_last_torque_without_a_bump() -> None:

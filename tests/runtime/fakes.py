@@ -14,10 +14,10 @@ from tcs_hil.control.protocol import Proposal, WheelState
 from tcs_hil.estimator import Estimate
 from tcs_hil.fault_codes import FaultCode
 from tcs_hil.gate import Permission
-from tcs_hil.pipeline import Trace
-from tcs_hil.runtime.record import Insight, Pass, Record, Stamps, record
+from tcs_hil.judgement import Verdict
+from tcs_hil.runtime.record import Record, record
 from tcs_hil.runtime.recording import RunInfo
-from tcs_hil.runtime.trigger import Tick
+from tcs_hil.runtime.tick import Insight, Pass, Stamps, Tick
 from tcs_hil.signals import (
     BusCondition,
     Command,
@@ -27,7 +27,7 @@ from tcs_hil.signals import (
     TcsState,
     TorqueLimits,
 )
-from tcs_hil.supervisor import Verdict
+from tcs_hil.trace import Trace
 
 PERIOD_NS = 2_000_000
 MEASUREMENT = Measurement(
@@ -150,7 +150,8 @@ def made_pass(number: int = 0, *, sent_us: int = 90, scheduled_ns: int = PERIOD_
     wake_ns = scheduled_ns + 10_000
     stamps = Stamps(wake_ns + 10_000, wake_ns + 40_000, scheduled_ns + sent_us * 1000)
     tick = Tick(number, scheduled_ns, wake_ns, wake_ns, scheduled_ns + PERIOD_NS, 0)
-    return Pass(tick, stamps, 4, MEASUREMENT, COMMAND, failed=False)
+    overrun = stamps.sent_ns > tick.deadline_ns
+    return Pass(tick, stamps, 4, MEASUREMENT, COMMAND, failed=False, overrun=overrun)
 
 
 def insight(wheel_stamp_ns: int | None = None) -> Insight:

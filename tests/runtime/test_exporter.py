@@ -13,9 +13,10 @@ from runtime.fakes import COMMAND, PERIOD_NS, RUN, insight, made_pass
 
 from tcs_hil.runtime.exporter import OWN_COUNTERS, TIMES, FlightCollector
 from tcs_hil.runtime.follower import Follower
-from tcs_hil.runtime.record import Pass, record
+from tcs_hil.runtime.record import record
 from tcs_hil.runtime.recorder import FlightRecorder
 from tcs_hil.runtime.recording import RunInfo
+from tcs_hil.runtime.tick import Pass
 from tcs_hil.signals import TcsState
 
 NOW_NS = 10 * PERIOD_NS
@@ -62,7 +63,7 @@ def test_ticks_and_troubles_are_counted_on_from_scrape_to_scrape(
     scrape: Scrape, recorder: FlightRecorder
 ) -> None:
     late = made_pass(sent_us=3000)
-    skipper = late._replace(tick=late.tick._replace(skipped=4), failed=True)
+    skipper = replace(late, tick=replace(late.tick, skipped=4), failed=True)
     write(recorder, late, made_pass())
     assert [scrape(f"{name}_total") for name in ("ticks", "overruns")] == [2, 1]
     write(recorder, skipper)
@@ -117,7 +118,7 @@ def test_every_time_of_a_tick_is_exported(
 def test_the_present_state_is_one_and_all_others_zero(
     scrape: Scrape, recorder: FlightRecorder
 ) -> None:
-    write(recorder, made_pass()._replace(command=replace(COMMAND, state=TcsState.DEGRADED)))
+    write(recorder, replace(made_pass(), command=replace(COMMAND, state=TcsState.DEGRADED)))
     present = {state.name: scrape("state", state=state.name) for state in TcsState}
     assert present == {state.name: float(state is TcsState.DEGRADED) for state in TcsState}
 

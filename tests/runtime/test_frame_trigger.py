@@ -7,7 +7,7 @@ from runtime.fakes import PERIOD_NS, FakeClock, FakePort
 
 from tcs_hil.canbus.port import Frame
 from tcs_hil.runtime.frame_trigger import FrameTrigger
-from tcs_hil.runtime.trigger import Tick
+from tcs_hil.runtime.tick import Tick
 
 REAR = 0xA2
 DRIVER = 0x98

@@ -21,12 +21,12 @@ from runtime.fakes import (
 
 from tcs_hil.canbus.port import Frame
 from tcs_hil.control.protocol import Proposal, WheelState
-from tcs_hil.pipeline import Trace
 from tcs_hil.runtime.loop import Loop
 from tcs_hil.runtime.record import FIELDS, Record
 from tcs_hil.runtime.stopwatch import TimedController
-from tcs_hil.runtime.trigger import Tick
+from tcs_hil.runtime.tick import Tick
 from tcs_hil.signals import BusCondition, Command, Measurement, TcsState
+from tcs_hil.trace import Trace
 
 ABANDONED = replace(COMMAND, state=TcsState.FAULT)
 

@@ -97,7 +97,7 @@ def test_every_field_comes_back_under_its_own_name(path: Path) -> None:
 
 def test_latency_in_lockstep_adds_bench_time_and_computing_time() -> None:
     made = made_pass()
-    bench = made._replace(tick=made.tick._replace(now_ns=6_000))
+    bench = replace(made, tick=replace(made.tick, now_ns=6_000))
     latency_ns = record(bench, insight(wheel_stamp_ns=4_000))[list(FIELDS).index("latency_ns")]
     assert latency_ns == 2_000 + 80_000
 

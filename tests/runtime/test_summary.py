@@ -64,7 +64,7 @@ def test_each_stage_is_the_time_since_the_one_before(summarised: Summarised) -> 
 
 def test_what_was_never_measured_has_no_distribution(summarised: Summarised) -> None:
     lost = made_pass()
-    lost = lost._replace(measurement=replace(lost.measurement, rear_speed_age_s=math.inf))
+    lost = replace(lost, measurement=replace(lost.measurement, rear_speed_age_s=math.inf))
     summary = summarised([record(lost, insight())])
     assert summary.latency is None
     assert summary.input_age is None
@@ -72,7 +72,7 @@ def test_what_was_never_measured_has_no_distribution(summarised: Summarised) -> 
 
 def test_overruns_skips_and_failures_are_counted(summarised: Summarised) -> None:
     late = made_pass(sent_us=3000)
-    skipper = late._replace(tick=late.tick._replace(skipped=4), failed=True)
+    skipper = replace(late, tick=replace(late.tick, skipped=4), failed=True)
     summary = summarised([record(made, insight()) for made in (late, skipper, made_pass())])
     assert (summary.ticks, summary.overruns, summary.skipped, summary.failures) == (3, 2, 4, 1)
     assert (summary.bus_errors, summary.lost_frames, summary.e2e_errors) == (6, 4, 5)
@@ -92,21 +92,21 @@ def test_errors_without_a_single_good_frame_look_like_another_bit_rate(
     summarised: Summarised, condition: BusCondition, heard: int, told: bool
 ) -> None:
     made = made_pass()
-    ill = made._replace(measurement=replace(made.measurement, bus=condition))
-    met = insight()._replace(counters=PortCounters(rx=heard))
+    ill = replace(made, measurement=replace(made.measurement, bus=condition))
+    met = replace(insight(), counters=PortCounters(rx=heard))
     advice = summarised([record(ill, met), record(made_pass(), met)]).advice
     assert advice.startswith("bit rate mismatch?") is told
 
 
 def test_states_and_statuses_are_counted_by_name(summarised: Summarised) -> None:
-    failed = TRACE._replace(
-        proposals=(Proposal(51.0, SolveStatus.FAILED), Proposal(52.0, SolveStatus.OK))
+    failed = replace(
+        TRACE, proposals=(Proposal(51.0, SolveStatus.FAILED), Proposal(52.0, SolveStatus.OK))
     )
-    degraded = made_pass()._replace(command=replace(COMMAND, state=TcsState.DEGRADED))
+    degraded = replace(made_pass(), command=replace(COMMAND, state=TcsState.DEGRADED))
     summary = summarised(
         [
             record(made_pass(), insight()),
-            record(degraded, insight()._replace(trace=failed)),
+            record(degraded, replace(insight(), trace=failed)),
         ]
     )
     assert summary.states == {"ACTIVE": 1, "DEGRADED": 1}
@@ -114,8 +114,8 @@ def test_states_and_statuses_are_counted_by_name(summarised: Summarised) -> None
 
 
 def test_a_law_that_was_not_asked_is_in_no_count(summarised: Summarised) -> None:
-    unasked = TRACE._replace(proposals=(Proposal(math.nan), Proposal(math.nan)))
-    summary = summarised([record(made_pass(), insight()._replace(trace=unasked))])
+    unasked = replace(TRACE, proposals=(Proposal(math.nan), Proposal(math.nan)))
+    summary = summarised([record(made_pass(), replace(insight(), trace=unasked))])
     assert summary.statuses == {}
     assert summary.solve is None
 

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 from runtime.fakes import PERIOD_NS, RUN, TRACE, insight, made_pass
 
 from tcs_hil.control.protocol import Proposal, SolveStatus
-from tcs_hil.runtime.record import Insight, Pass, record
+from tcs_hil.runtime.record import record
 from tcs_hil.runtime.recorder import FlightRecorder
 from tcs_hil.runtime.recording import read
+from tcs_hil.runtime.tick import Insight, Pass
 from tcs_hil.runtime.worst import BadTick, worst_ticks
 
 Judge = Callable[..., list[BadTick]]
@@ -40,8 +42,8 @@ def late(number: int, *, wake_us: int = 0, receive_us: int = 0, send_us: int = 0
     received_ns = made.stamps.received_ns + (wake_us + receive_us) * 1000
     stepped_ns = made.stamps.stepped_ns + (wake_us + receive_us) * 1000
     sent_ns = made.stamps.sent_ns + (wake_us + receive_us + send_us) * 1000
-    stamps = made.stamps._replace(received_ns=received_ns, stepped_ns=stepped_ns, sent_ns=sent_ns)
-    return made._replace(tick=made.tick._replace(wake_ns=wake_ns), stamps=stamps)
+    stamps = replace(made.stamps, received_ns=received_ns, stepped_ns=stepped_ns, sent_ns=sent_ns)
+    return replace(made, tick=replace(made.tick, wake_ns=wake_ns), stamps=stamps)
 
 
 def test_the_slowest_ticks_are_listed_in_the_order_of_time(worst: Judge) -> None:
@@ -66,8 +68,8 @@ def test_a_law_that_thought_long_is_to_blame_and_not_the_rest_of_the_decision(
     worst: Judge,
 ) -> None:
     made = made_pass(20, sent_us=3000)
-    made = made._replace(stamps=made.stamps._replace(stepped_ns=made.stamps.sent_ns - 40_000))
-    (tick,) = worst(1, made, knowing=insight()._replace(solve_ns=(81, 2_900_000)))
+    made = replace(made, stamps=replace(made.stamps, stepped_ns=made.stamps.sent_ns - 40_000))
+    (tick,) = worst(1, made, knowing=replace(insight(), solve_ns=(81, 2_900_000)))
     assert tick.culprit == "solve_fr"
     assert tick.overrun
 
@@ -80,8 +82,8 @@ def test_the_stages_add_up_to_the_response(worst: Judge) -> None:
 def test_what_the_tick_met_stands_beside_it(worst: Judge) -> None:
     failed = (Proposal(51.0, SolveStatus.FAILED, iterations=9), Proposal(52.0, iterations=8))
     skipper = late(20, send_us=90)
-    skipper = skipper._replace(tick=skipper.tick._replace(skipped=3))
-    knowing = insight()._replace(trace=TRACE._replace(proposals=failed))
+    skipper = replace(skipper, tick=replace(skipper.tick, skipped=3))
+    knowing = replace(insight(), trace=replace(TRACE, proposals=failed))
     (tick,) = worst(1, skipper, knowing=knowing)
     assert (tick.frames, tick.skipped, tick.state) == (4, 3, "ACTIVE")
     assert tick.statuses == ("FAILED", "OK")

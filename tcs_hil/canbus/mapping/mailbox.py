@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from tcs_hil.canbus.codec import SignalSpec, compile_codec
-from tcs_hil.canbus.e2e import E2EStatus
+from tcs_hil.canbus.e2e import ERROR, OK, E2EStatus
 from tcs_hil.canbus.e2e_state import Threshold, WindowSpec
 from tcs_hil.canbus.mapping.plan import MappedInput, MappedMessage, Rule
 from tcs_hil.canbus.mapping.reading import Reading
@@ -52,15 +52,15 @@ class MappedMailbox:
 
     def put(self, data: bytes, stamp_ns: int) -> E2EStatus:
         """Judge a frame of the right length and keep its values when they are good."""
-        status = self._checker.check(data) if self._checker is not None else E2EStatus.OK
+        status = self._checker.check(data) if self._checker is not None else OK
         self._watch.count(status, stamp_ns)
-        if status is E2EStatus.OK:
+        if status is OK:
             self._take(self._decode(data), stamp_ns)
         return status
 
     def reject(self, stamp_ns: int) -> None:
         """Count a frame of the wrong length as an error."""
-        self._watch.count(E2EStatus.ERROR, stamp_ns)
+        self._watch.count(ERROR, stamp_ns)
 
     def state(self, now_ns: int) -> InputState:
         """What the protection has come to by ``now_ns``."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from tcs_hil.canbus.database import load_database
 from tcs_hil.canbus.mapping.group import Group
@@ -22,7 +23,7 @@ from tcs_hil.canbus.outbox import OutgoingFrame
 from tcs_hil.canbus.service_node import ServiceNode
 from tcs_hil.signals import BusCondition, Command, Measurement
 
-ACCEL_PATIENCE_CYCLES = 3
+ACCEL_PATIENCE_CYCLES: Final = 3
 """A measurement does not tell how old the acceleration is: older than this it is none."""
 
 

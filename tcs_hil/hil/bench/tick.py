@@ -21,8 +21,8 @@ from tcs_hil.runtime.lockstep import FOREVER_NS
 from tcs_hil.runtime.loop import Loop
 from tcs_hil.runtime.recorder import FlightRecorder
 from tcs_hil.runtime.recording import RunInfo, read
+from tcs_hil.runtime.tick import Tick
 from tcs_hil.runtime.times import Times, times_us
-from tcs_hil.runtime.trigger import Tick
 from tcs_hil.service.bus_end import bus_end
 from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.service.wiring import build_laws, build_pipeline

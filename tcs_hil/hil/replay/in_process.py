@@ -12,7 +12,7 @@ from tcs_hil.hil.replay.recorded import Answers, RecordedTick
 from tcs_hil.runtime.clock import MonotonicClock
 from tcs_hil.runtime.loop import Loop
 from tcs_hil.runtime.record import Record
-from tcs_hil.runtime.trigger import Tick
+from tcs_hil.runtime.tick import Tick
 from tcs_hil.service.settings import ServiceConfig
 from tcs_hil.service.wiring import build_laws, build_pipeline
 from tcs_hil.signals import BusCondition

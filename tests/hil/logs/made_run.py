@@ -97,7 +97,7 @@ def _write_flight(path: Path, lockstep: bool) -> None:
             began_ns = STARTED_MONOTONIC_NS + PLANT_NS + tick * PERIOD_NS
             made = made_pass(tick, scheduled_ns=began_ns + PHASE_NS)
             if lockstep:
-                made = made._replace(tick=made.tick._replace(now_ns=tick * PERIOD_NS))
+                made = replace(made, tick=replace(made.tick, now_ns=tick * PERIOD_NS))
             recorder.write(record(made, insight()))
 
 

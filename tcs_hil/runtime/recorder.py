@@ -99,5 +99,6 @@ def _reserved(path: Path, descriptor: int, size: int) -> mmap.mmap:
     except OSError:
         path.unlink()
         raise
-    # Populated, so that the first lap of the ring takes no page faults.
+    # Populated, so that the first lap reads nothing from disk; a file system that keeps track of
+    # what is written still takes a short fault for a page's first write.
     return mmap.mmap(descriptor, size, mmap.MAP_SHARED | mmap.MAP_POPULATE)

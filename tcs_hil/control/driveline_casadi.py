@@ -56,6 +56,7 @@ class CasadiCore:
     def reset(self) -> None:
         """Forget the last plan."""
         self._guess = np.zeros_like(self._guess)
+        self._problem.shrinkage = 1.0
 
 
 class Flow:

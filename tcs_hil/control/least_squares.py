@@ -40,6 +40,7 @@ class Linearisation:
         self.plan = np.zeros(n)  # (N,), the last one asked for
         self.gradient = np.zeros(n)  # (N,), there
         self.hessian = np.zeros((n, n))  # (N, N), there
+        self.shrinkage = 1.0  # of the steps of `tcs_hil.control.sqp`
         self._buffer, self._evaluate = function.buffer()
         for index, memory in enumerate((self._x0.data, self.plan.data, self._parameters.data)):
             self._buffer.set_arg(index, memory)
@@ -82,4 +83,5 @@ class Tracked(Linearisation):
         """Know nothing: the model of no torque at all."""
         for memory in (self.plan, self.gradient, self._drift):
             memory.fill(0.0)
+        self.shrinkage = 1.0
         self.hessian[:] = np.eye(self.plan.size)

@@ -24,7 +24,7 @@ class NativeDriveline:
         _describe(self._struct, settings, vehicle)
         tuning = settings.default.nmpc
         self._plan = array_of(self._struct.plan)[: len(tuning.blocks)]  # (N,), Nm
-        patience = tuning.max_iterations, tuning.step_tolerance_nm
+        patience = tuning.max_iterations, tuning.leftover_nm
         self._lib.driveline_setup(self._struct, len(tuning.blocks), *patience)
 
     def start_from(self, x: Sequence[float]) -> None:

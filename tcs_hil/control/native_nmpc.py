@@ -21,6 +21,6 @@ def native_nonlinear_mpc(settings: ControlSettings, vehicle: Vehicle) -> NativeL
     struct.slip_gain = math.sqrt(tuning.weight_slip / tuning.weight_reduction)
     struct.integral_gain = math.sqrt(tuning.weight_integral / tuning.weight_reduction)
     struct.parameters = (settings.slip_reference, *astuple(vehicle))
-    patience = tuning.max_iterations, tuning.step_tolerance_nm
+    patience = tuning.max_iterations, tuning.leftover_nm
     core().lib.nmpc_setup(struct, tuning.horizon, *patience)
     return law

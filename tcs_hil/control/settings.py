@@ -54,12 +54,7 @@ class NmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     weight_reduction: PositiveWeight = 1.6e-7  # positive: it makes every QP strictly convex
     substeps: Annotated[int, msgspec.Meta(ge=4, le=40)] = 4  # fewer diverge at standstill
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 20
-    step_tolerance_nm: ClassVar[float] = 1.5e-3
-    """A step this small is taken and ends the iteration.
-
-    Along the paper's manoeuvres each iteration shrinks the error 180-fold or better
-    (the residuals at the solution are small), so what is left is below 1e-5 Nm.
-    """
+    leftover_nm: ClassVar[float] = 0.0  # every tick is solved to convergence
 
 
 class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -78,12 +73,8 @@ class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     weight_reduction: PositiveWeight = 5e-6
     weight_change: PositiveWeight = 4e-2  # on (u_k - u_{k-1})²
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 2
-    step_tolerance_nm: ClassVar[float] = 0.6
-    """A step this small is taken and ends the iteration: seven ticks of ten have no longer one.
-
-    Along the manoeuvres it leaves the first torque within half a bit of the limit on the bus
-    (0.05 Nm) of where a second step would take it, as a rule within 1e-4 Nm.
-    """
+    leftover_nm: ClassVar[float] = 1e-3
+    """What a tick may leave to the next one: a fiftieth of what the bus can say of a torque."""
     observer_time_s: TimeConstant = 0.02  # of the force disturbance
     entry_ratio: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.3
     """Share of the slip reference at which the law takes over from the driver."""

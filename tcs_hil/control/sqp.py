@@ -14,6 +14,16 @@ from tcs_hil.control.protocol import SolveStatus
 
 FloatArray = NDArray[np.float64]
 
+STEP_TOLERANCE_NM = 1.5e-3
+"""A step this small is taken and ends the iteration.
+
+Along the paper's manoeuvres each iteration shrinks the error 180-fold or better
+(the residuals at the solution are small), so what is left is below 1e-5 Nm.
+"""
+
+LEAST_SHRINKAGE = 5e-4
+"""Steps are not trusted to shrink better: at a bound they shrink to nothing."""
+
 ARMIJO = 1e-4
 STEP_LENGTHS = tuple(0.5**k for k in range(16))
 
@@ -24,6 +34,7 @@ class LeastSquares(Protocol):
     plan: FloatArray  # (N,)
     gradient: FloatArray  # (N,)
     hessian: FloatArray  # (N, N), positive definite
+    shrinkage: float  # a step over the one before it, when there last were two; 1 at first
 
     def at(self, plan: FloatArray) -> float:
         """Cost of a plan (N,)."""
@@ -31,7 +42,7 @@ class LeastSquares(Protocol):
 
 
 class Patience(Protocol):
-    """When to stop: after a step this small, or after so many."""
+    """When to stop."""
 
     @property
     def max_iterations(self) -> int:
@@ -39,8 +50,8 @@ class Patience(Protocol):
         ...
 
     @property
-    def step_tolerance_nm(self) -> float:
-        """Largest element of a step that is taken as the last one."""
+    def leftover_nm(self) -> float:
+        """What the last step may leave, judged by how the steps of earlier ticks have shrunk."""
         ...
 
 
@@ -54,15 +65,23 @@ def minimise(
     problem: LeastSquares, plan: FloatArray, ceiling_nm: float, patience: Patience
 ) -> Plan:
     """Minimise over 0 <= plan <= ceiling_nm from a feasible plan (N,).  Nothing is raised."""
-    cost = problem.at(plan)
+    cost, before_nm = problem.at(plan), math.inf
     for iteration in range(1, patience.max_iterations + 1):
         step = _box_step(problem, plan, ceiling_nm) if math.isfinite(cost) else None
         if step is None:
             return Plan(plan, SolveStatus.FAILED, iteration)
-        if max(map(abs, step.tolist())) <= patience.step_tolerance_nm:
+        length_nm = max(map(abs, step.tolist()))
+        if iteration > 1:
+            problem.shrinkage = max(length_nm / before_nm, LEAST_SHRINKAGE)
+        if _suffices(length_nm, problem.shrinkage, patience):
             return Plan(plan + step, SolveStatus.OK, iteration)
-        plan, cost = _search(problem, plan, cost, step)
+        (plan, cost), before_nm = _search(problem, plan, cost, step), length_nm
     return Plan(plan, SolveStatus.MAX_ITERATIONS, patience.max_iterations)
+
+
+def _suffices(length_nm: float, shrinkage: float, patience: Patience) -> bool:
+    """Is a step of this length the last one?"""
+    return length_nm <= STEP_TOLERANCE_NM or length_nm * shrinkage <= patience.leftover_nm
 
 
 def _box_step(problem: LeastSquares, plan: FloatArray, ceiling_nm: float) -> FloatArray | None:

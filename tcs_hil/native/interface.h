@@ -56,7 +56,7 @@ typedef struct {
     ...;
 } nmpc;
 
-void nmpc_setup(nmpc *law, int horizon, int max_iterations, double step_tolerance_nm);
+void nmpc_setup(nmpc *law, int horizon, int max_iterations, double leftover_nm);
 void nmpc_reset(nmpc *law);
 int nmpc_step(nmpc *law, double slip_speed_mps, double wheel_speed_radps, double slip_ratio,
               double vehicle_speed_mps, double torque_ref_nm);
@@ -69,8 +69,7 @@ typedef struct {
     ...;
 } driveline;
 
-void driveline_setup(driveline *law, int block_count, int max_iterations,
-                     double step_tolerance_nm);
+void driveline_setup(driveline *law, int block_count, int max_iterations, double leftover_nm);
 void driveline_reset(driveline *law);
 void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
                             double first_periods, double disturbance_n);

@@ -21,6 +21,7 @@ class Arctangents:
     def __init__(self, target: list[float]) -> None:
         self._target = np.array(target)
         self.plan = np.zeros(2)
+        self.shrinkage = 1.0
         self.evaluations = 0
 
     def at(self, plan: np.ndarray) -> float:
@@ -36,7 +37,7 @@ class Arctangents:
 class Undefined:
     """A cost that is not a number."""
 
-    plan, gradient, hessian = np.zeros(2), np.zeros(2), np.eye(2)
+    plan, gradient, hessian, shrinkage = np.zeros(2), np.zeros(2), np.eye(2), 1.0
 
     def at(self, plan: np.ndarray) -> float:
         return math.nan
@@ -69,11 +70,20 @@ def test_a_good_guess_costs_one_evaluation() -> None:
     np.testing.assert_allclose(plan.inputs, [30.0, 70.0], atol=1e-9)
 
 
-def test_a_law_says_which_step_is_small_enough_to_be_its_last() -> None:
-    problem = Arctangents([30.0, 70.0])
-    plan = minimise(problem, np.array([29.5, 70.0]), 100.0, DrivelineNmpcSettings())
-    assert plan.iterations == problem.evaluations == 1
+def test_once_steps_were_seen_to_shrink_one_that_leaves_little_is_the_last() -> None:
+    problem, patience = Arctangents([30.0, 70.0]), DrivelineNmpcSettings()
+    guess = np.array([29.5, 70.0])
+    assert minimise(problem, guess, 100.0, patience).iterations == 2
+    assert problem.shrinkage < 1e-2
+    plan = minimise(problem, guess, 100.0, replace(patience, max_iterations=1))
     assert plan.status is SolveStatus.OK
+    np.testing.assert_allclose(plan.inputs, [30.0, 70.0], atol=patience.leftover_nm)
+
+
+def test_at_a_bound_steps_shrink_to_nothing_which_says_little() -> None:
+    problem = Arctangents([-5.0, 12.0])
+    minimise(problem, np.array([8.0, 2.0]), 10.0, UNHURRIED)
+    assert problem.shrinkage > 0.0
 
 
 def test_running_out_of_iterations_is_a_status_with_a_plan_in_the_box() -> None:

@@ -6,10 +6,9 @@
 #include "least_squares.h"
 #include "wheel_state.h"
 
-void driveline_setup(driveline *law, int block_count, int max_iterations,
-                     double step_tolerance_nm) {
+void driveline_setup(driveline *law, int block_count, int max_iterations, double leftover_nm) {
     driveline_fold(law->parameters, law->constants);
-    sqp_setup(&law->solver, block_count, max_iterations, step_tolerance_nm);
+    sqp_setup(&law->solver, block_count, max_iterations, leftover_nm);
 }
 
 void driveline_reset(driveline *law) { sqp_reset(&law->solver); }

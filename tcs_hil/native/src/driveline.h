@@ -23,8 +23,7 @@ typedef struct {
 } driveline;
 
 /* Set up with period, gains, parameters and blocks filled in. */
-void driveline_setup(driveline *law, int block_count, int max_iterations,
-                     double step_tolerance_nm);
+void driveline_setup(driveline *law, int block_count, int max_iterations, double leftover_nm);
 
 /* Forget the last plan. */
 void driveline_reset(driveline *law);

@@ -4,9 +4,9 @@
 
 #include "least_squares.h"
 
-void nmpc_setup(nmpc *law, int horizon, int max_iterations, double step_tolerance_nm) {
+void nmpc_setup(nmpc *law, int horizon, int max_iterations, double leftover_nm) {
     wheel_fold(law->parameters, law->constants);
-    sqp_setup(&law->solver, horizon, max_iterations, step_tolerance_nm);
+    sqp_setup(&law->solver, horizon, max_iterations, leftover_nm);
     nmpc_reset(law);
 }
 

@@ -23,7 +23,7 @@ typedef struct {
 } nmpc;
 
 /* Set up with integral, substeps, gains and parameters filled in. */
-void nmpc_setup(nmpc *law, int horizon, int max_iterations, double step_tolerance_nm);
+void nmpc_setup(nmpc *law, int horizon, int max_iterations, double leftover_nm);
 
 /* Forget the integral and the last model. */
 void nmpc_reset(nmpc *law);

@@ -3,19 +3,23 @@
 #include <math.h>
 #include <string.h>
 
+/* See tcs_hil/control/sqp.py. */
+static const double STEP_TOLERANCE_NM = 1.5e-3;
+static const double LEAST_SHRINKAGE = 5e-4;
 static const double ARMIJO = 1e-4;
 enum { HALVINGS = 16 };
 
-void sqp_setup(sqp *solver, int n, int max_iterations, double step_tolerance_nm) {
+void sqp_setup(sqp *solver, int n, int max_iterations, double leftover_nm) {
     memset(solver, 0, sizeof *solver);
     solver->qp.n = n;
     solver->max_iterations = max_iterations;
-    solver->step_tolerance_nm = step_tolerance_nm;
+    solver->leftover_nm = leftover_nm;
     sqp_reset(solver);
 }
 
 void sqp_reset(sqp *solver) {
     const int n = solver->qp.n;
+    solver->shrinkage = 1.0;
     memset(solver->plan, 0, sizeof solver->plan);
     memset(solver->point, 0, sizeof solver->point);
     memset(solver->gradient, 0, sizeof solver->gradient);
@@ -78,13 +82,21 @@ static int solve_model(sqp *solver, double ceiling_nm) {
     return box_step(solver, ceiling_nm);
 }
 
+/* Is a step of this length the last one? */
+static int suffices(sqp *solver, double length, double before) {
+    if (solver->iterations > 1) solver->shrinkage = fmax(length / before, LEAST_SHRINKAGE);
+    return length <= STEP_TOLERANCE_NM || length * solver->shrinkage <= solver->leftover_nm;
+}
+
 int sqp_minimise(sqp *solver, least_squares *model, void *problem, double ceiling_nm) {
     const int n = solver->qp.n;
-    double cost = model_at_plan(solver, model, problem);
+    double cost = model_at_plan(solver, model, problem), length = 0.0;
     for (solver->iterations = 1; solver->iterations <= solver->max_iterations;
          solver->iterations++) {
         if (!isfinite(cost) || solve_model(solver, ceiling_nm) != SOLVE_OK) return SOLVE_FAILED;
-        if (longest(n, solver->qp.x) <= solver->step_tolerance_nm) {
+        const double before = length;
+        length = longest(n, solver->qp.x);
+        if (suffices(solver, length, before)) {
             for (int i = 0; i < n; i++) solver->plan[i] += solver->qp.x[i];
             return SOLVE_OK;
         }

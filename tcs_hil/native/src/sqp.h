@@ -7,7 +7,8 @@
 
 typedef struct {
     int max_iterations;
-    double step_tolerance_nm;    /* a step this small is taken and ends the iteration */
+    double leftover_nm;          /* what the last step may leave, as steps have shrunk */
+    double shrinkage;            /* a step over the one before it, when there last were two */
     int iterations;
     double plan[BOX_QP_MAX];     /* the guess before, the result after; Nm */
     double point[BOX_QP_MAX];    /* the plan of the last model */
@@ -21,7 +22,7 @@ typedef double least_squares(void *problem, int n, const double *plan, double *g
                              double *hessian);
 
 /* Start cold with n torques. */
-void sqp_setup(sqp *solver, int n, int max_iterations, double step_tolerance_nm);
+void sqp_setup(sqp *solver, int n, int max_iterations, double leftover_nm);
 
 /* Forget the last plan and its model. */
 void sqp_reset(sqp *solver);

@@ -217,14 +217,18 @@ def body(function: Any) -> str:
         generator.add(function)
         text = Path(generator.generate(folder + "/")).read_text()
     found = re.search(r"static int casadi_f0\(.*?\) {\n(.*?)  return 0;", text, re.DOTALL)
-    if found is None:
-        raise ValueError("CasADi writes its functions in another way than scripts/generate_native")
     given, made = names_of(function)
-    lines = found[1].replace("casadi_real", "double").replace("casadi_sq", "squared")
+    lines = (
+        (found[1] if found else text)
+        .replace("casadi_real", "double")
+        .replace("casadi_sq", "squared")
+    )
     lines = re.sub(
         r"arg\[(\d)\]\? arg\[\d\](\[\d+\]) : 0", lambda m: given[int(m[1])] + m[2], lines
     )
     lines = re.sub(r"if \(res\[(\d)\]!=0\) res\[\d\]", lambda m: made[int(m[1])], lines)
+    if unknown := re.search(r"casadi_\w+|\barg\b|\bres\b", lines):
+        raise ValueError(f"CasADi writes '{unknown[0]}', which scripts/generate_native cannot read")
     return re.sub(r"^ +", "    ", lines, flags=re.MULTILINE).rstrip()
 
 

@@ -25,7 +25,9 @@ TICK = {
     "tcs_hil/plausibility": "driven rolling screen trace",
     "tcs_hil/runtime": "lockstep loop record recorder stopwatch transitions trigger",
     "tcs_hil/hil": "busless simulation",
-    "plant_emulator": "emulator limit_keeper link pedal plant plant_faults sensor_set virtual_bus",
+    "tcs_hil/hil/metrics": "ideal ideal_car",
+    "plant_emulator": "emulator limit_keeper link pedal plant plant_faults recording sensor_set"
+    " virtual_bus",
 }
 
 

@@ -138,11 +138,8 @@ class Plant:
         return self._faults.demand(demand, self.time_s)
 
     def _next_change(self) -> float:
-        return min(
-            self._pedal.next_change(self.time_s),
-            self._keeper.next_change(self.time_s),
-            self._faults.next_change(self.time_s),
-        )
+        asked_s = min(self._pedal.next_change(self.time_s), self._keeper.next_change(self.time_s))
+        return min(asked_s, self._faults.next_change(self.time_s))
 
 
 def _build(scenario: Scenario, road: NDArray[np.float64]) -> tuple[Car, SensorSet, Encoder | None]:

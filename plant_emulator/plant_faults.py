@@ -67,8 +67,10 @@ class PlantFaults:
 
     def next_change(self, time_s: float) -> float:
         """When a motor's fault next begins, ends or reads what it is asked for."""
-        changes = [layer.motors.next_change(time_s) for layer in self._layers]
-        return min(changes, default=math.inf)
+        change_s = math.inf
+        for layer in self._layers:
+            change_s = min(change_s, layer.motors.next_change(time_s))
+        return change_s
 
     def _layer(self, faults: tuple[Fault, ...]) -> _Layer:
         return _Layer(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from msgspec import Meta
@@ -19,6 +19,7 @@ Grade = Annotated[float, Meta(ge=-0.2, le=0.2)]
 SHORTEST_S = 1e-10
 
 FROM_M, MU_LEFT, MU_RIGHT, GRADE, PEAK_ONLY = range(5)
+PatchRow: TypeAlias = tuple[float, float, float, float, float]
 
 
 class Patch(Table, frozen=True):
@@ -44,7 +45,7 @@ class Patch(Table, frozen=True):
             raise ValueError("give either `mu` or both `mu_left` and `mu_right`")
 
     @property
-    def row(self) -> tuple[float, float, float, float, float]:
+    def row(self) -> PatchRow:
         """The patch as compiled code reads it."""
         left = self.mu if self.mu_left is None else self.mu_left
         right = self.mu if self.mu_right is None else self.mu_right

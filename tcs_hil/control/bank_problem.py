@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -87,6 +88,7 @@ class Band(NamedTuple):
     cost: BandCost
 
 
+@functools.lru_cache(maxsize=1)  # the right wheel's problem is the left one's
 def bands_of(bank: KoopmanBank, settings: ControlSettings) -> list[Band]:
     """Every band of the bank."""
     tuning, bands = settings.default.kmpc, []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Final
 
 import numpy as np
@@ -27,7 +28,7 @@ class DrivelineObserver:
     """
 
     def __init__(self, driveline: Driveline, period_s: float) -> None:
-        self._rows = filter_rows(*discretised(driveline, period_s))
+        self._rows = _rows_of(driveline, period_s)
         self._x = [0.0, 0.0, 0.0, 0.0]
         self._input_nm = 0.0
         self._known = False
@@ -51,6 +52,12 @@ class DrivelineObserver:
     def reset(self) -> None:
         """Nothing is known: the wheel turns like its motor."""
         self._known = False
+
+
+@functools.cache
+def _rows_of(driveline: Driveline, period_s: float) -> tuple[tuple[float, ...], ...]:
+    """The filter of a driveline: one side's is the other's, and that of a campaign's next run."""
+    return filter_rows(*discretised(driveline, period_s))
 
 
 def discretised(line: Driveline, period_s: float) -> tuple[FloatArray, FloatArray]:

@@ -7,7 +7,7 @@ from bisect import bisect_right
 
 from plant_emulator.body import GRAVITY_MPS2
 from plant_emulator.pedal import Pedal
-from plant_emulator.road import MU_LEFT, MU_RIGHT, Patch
+from plant_emulator.road import FROM_M, PatchRow
 from plant_emulator.scenario import Scenario
 from tcs_hil.hil.metrics.ideal_car import IdealCar, ideal_car
 
@@ -26,10 +26,11 @@ def ideal_speed_gained_mps(scenario: Scenario, duration_s: float) -> float:
     slightly more: its suspension moves.
     """
     car, pedal = ideal_car(scenario.vehicle), Pedal(scenario.driver)
-    starts_m = [patch.from_m for patch in scenario.road]
+    patches = [patch.row for patch in scenario.road]
+    starts_m = [patch[FROM_M] for patch in patches]
     speed_mps, position_m, accel_mps2 = scenario.start_speed_mps, 0.0, 0.0
     for step in range(round(duration_s / STEP_S)):
-        patch = scenario.road[max(bisect_right(starts_m, position_m) - 1, 0)]
+        patch = patches[max(bisect_right(starts_m, position_m) - 1, 0)]
         request_nm = pedal.at(step * STEP_S).value
         for _ in range(ROUNDS):
             accel_mps2 = _acceleration(car, patch, request_nm, speed_mps, accel_mps2)
@@ -39,16 +40,17 @@ def ideal_speed_gained_mps(scenario: Scenario, duration_s: float) -> float:
 
 
 def _acceleration(
-    car: IdealCar, patch: Patch, request_nm: float, speed_mps: float, guess_mps2: float
+    car: IdealCar, patch: PatchRow, request_nm: float, speed_mps: float, guess_mps2: float
 ) -> float:
     """Acceleration under the load that ``guess_mps2`` leaves on the front wheels."""
-    grade_cos = 1.0 / math.hypot(1.0, patch.grade)
+    _, mu_left, mu_right, grade, _ = patch
+    grade_cos = 1.0 / math.hypot(1.0, grade)
     weight_n = car.mass_kg * GRAVITY_MPS2
-    against_n = car.drag_kgpm * speed_mps**2 + weight_n * patch.grade * grade_cos
+    against_n = car.drag_kgpm * speed_mps**2 + weight_n * grade * grade_cos
     load_n = car.load_n * grade_cos - car.shed_kg * (guess_mps2 + against_n / car.mass_kg)
     most_n = car.torque_force_n(request_nm, speed_mps, guess_mps2)
-    mus = patch.row[MU_LEFT], patch.row[MU_RIGHT]
-    force_n = sum(min(car.peak_force_n(max(load_n, 0.0), mu), most_n) for mu in mus)
+    force_n = min(car.peak_force_n(max(load_n, 0.0), mu_left), most_n)
+    force_n += min(car.peak_force_n(max(load_n, 0.0), mu_right), most_n)
     # The driven wheels' resistance is between motor and tyre: it takes torque, not force.
     rolling_n = car.rolling_ratio * (weight_n * grade_cos - 2.0 * load_n)
     return (force_n - against_n - rolling_n) / (car.mass_kg + car.spin_kg)

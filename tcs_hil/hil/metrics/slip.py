@@ -43,7 +43,9 @@ def slip_metrics(
     torque can reach the reference (see ``reachable``).
     """
     ramp_end_s = _ramp_end_s(truth)
-    truth = truth[truth["speed_mps"] <= up_to_mps]
+    counted = truth["speed_mps"] <= up_to_mps
+    if not counted.all():  # copying the whole run takes milliseconds
+        truth = truth[counted]
     slip = truth["slip_ratio"][:, FRONT]  # (n, 2)
     can_hold = reachable(truth, reference, vehicle, motor_power_w)
     counts = can_hold & (truth["time_s"] >= ramp_end_s)[:, None]

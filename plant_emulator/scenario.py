@@ -54,9 +54,11 @@ class VehicleTable(Table, frozen=True):
     driveline: Driveline = Driveline()
 
     def __post_init__(self) -> None:
-        """Refuse a car of one's own that is not said where to find."""
+        """Refuse a car of one's own that is not said where to find, or is found and not driven."""
         if self.variant == "own" and self.source is None:
             raise ValueError('`variant = "own"` needs the file of the car as `source`')
+        if self.variant != "own" and self.source is not None:
+            raise ValueError(f'`source` is for `variant = "own"`, not "{self.variant}"')
 
     @property
     def whole(self) -> WholeCar:
@@ -105,7 +107,8 @@ class Scenario(Table, frozen=True):
 
     def with_variant(self, variant: Variant) -> Scenario:
         """The same scenario driven by the other car."""
-        vehicle = msgspec.structs.replace(self.vehicle, variant=variant)
+        source = self.vehicle.source if variant == "own" else None
+        vehicle = msgspec.structs.replace(self.vehicle, variant=variant, source=source)
         return msgspec.structs.replace(self, vehicle=vehicle)
 
     def resolved(self) -> Scenario:

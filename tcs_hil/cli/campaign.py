@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from rich.console import Console
 from rich.table import Table as Page
 
+from plant_emulator.session import check_own_car
 from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import convert
 from tcs_hil.console import counted, refuse
@@ -88,7 +89,7 @@ def _campaign(
 
     everything = list(enumerate(points(plan.study)))
     for corner in corners(plan.study):  # what does not exist or fit is refused before anything runs
-        job(plan, corner, 0)
+        check_own_car(job(plan, corner, 0).scenario)
     table = Table(folder, plan)
     tasks = [(index, point) for index, point in everything if index not in table.done]
     if tasks:

@@ -10,6 +10,7 @@ from msgspec import structs, to_builtins
 
 from plant_emulator.expect import Expect
 from plant_emulator.scenario import Scenario
+from plant_emulator.session import check_own_car
 from tcs_hil.config import convert
 from tcs_hil.control.settings import PresetName
 from tcs_hil.errors import ConfigError
@@ -17,6 +18,7 @@ from tcs_hil.hil.judging.channels import namespace
 from tcs_hil.hil.judging.checks import prepare
 from tcs_hil.hil.judging.evidence import Evidence
 from tcs_hil.hil.judging.verdict import Finding, judge
+from tcs_hil.service.bus_end import bus_end
 from tcs_hil.service.settings import ControllerName, ServiceConfig
 
 Judge = Callable[[Evidence], list[Finding]]
@@ -83,16 +85,22 @@ def distinct(cases: Iterable[Case]) -> list[Case]:
 
 
 def check_cases(cases: Sequence[Case]) -> None:
-    """Refuse what could not be judged or told apart, before anything is driven.
+    """Refuse what could not be driven, judged or told apart, before anything is driven.
 
     Raises:
-        DatabaseError: the DBC cannot be read.
-        ConfigError: there is no such model file, an expectation names what does not
+        DatabaseError: the DBC cannot be used.
+        ConfigError: there is no such model file, a signal map does not fit its DBC, a
+            car of one's own cannot be driven, an expectation names what does not
             exist, or two cases have one name; the culprit is named.
     """
     for model in {case.config.model for case in cases} - {None}:
         if not Path(str(model)).is_file():
             raise ConfigError(f"{model}: there is no such model file")
+    configs = (case.config for case in cases if case.config.bus.database is not None)
+    for config in {(each.bus.database, repr(each.map)): each for each in configs}.values():
+        bus_end(config)
+    for scenario in {case.scenario_name: case.scenario for case in cases}.values():
+        check_own_car(scenario)
     for case in cases:
         namespace(case.config.bus.database)
         for place, expect in enumerate(case.scenario.expect):  # counted as in every TOML error

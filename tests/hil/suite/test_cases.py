@@ -9,8 +9,8 @@ from hil.driven import LAUNCH, launch
 from msgspec import structs
 
 from plant_emulator.expect import Expect
-from plant_emulator.scenario import list_scenarios
-from tcs_hil.errors import ConfigError, TcsError
+from plant_emulator.scenario import VehicleTable, list_scenarios
+from tcs_hil.errors import ConfigError, DatabaseError, TcsError
 from tcs_hil.hil.suite.case import Case, check_cases, judge_expectations, with_law
 from tcs_hil.hil.suite.library import scenario_case, suite_cases, suite_names
 from tcs_hil.service.settings import BusSettings, ServiceConfig
@@ -71,6 +71,20 @@ def test_a_limit_on_what_does_not_exist_is_refused_with_scenario_and_place() -> 
 def test_a_file_of_the_service_that_is_not_there_is_refused(config: ServiceConfig) -> None:
     with pytest.raises(TcsError, match=r"^nowhere\."):
         check_cases([Case("own", "mine", LAUNCH, config)])
+
+
+def test_a_dbc_that_lacks_what_the_service_needs_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "cut.dbc").write_text('VERSION ""\n\nBU_: TCS\n\nBO_ 144 TorqueLimit: 8 TCS\n')
+    config = structs.replace(CONFIG, bus=BusSettings(database=str(tmp_path / "cut.dbc")))
+    with pytest.raises(DatabaseError, match=r"cut\.dbc: message TorqueLimit"):
+        check_cases([Case("own", "mine", LAUNCH, config)])
+
+
+def test_a_car_that_cannot_be_driven_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "car.py").write_text("class Car:\n    def __init__(self, scenario): pass\n")
+    vehicle = VehicleTable(variant="own", source=str(tmp_path / "car.py:Car"))
+    with pytest.raises(ConfigError, match=r"car\.py:Car: fails in `advance`"):
+        check_cases([Case("own", "mine", structs.replace(LAUNCH, vehicle=vehicle), CONFIG)])
 
 
 def test_two_scenarios_of_one_name_are_refused(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from plant_emulator.plant import Plant
 from plant_emulator.scenario import load_scenario
+from plant_emulator.session import check_own_car
 from plant_emulator.truth import BODY_SPEED, DISTANCE, SLIP_RATIO
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.simulation import simulate
@@ -95,13 +96,37 @@ def test_parameters_are_set_before_the_start(scenario, tmp_path):
         ('source = "nowhere.py:Car"', "nowhere.py:Car is no .fmu and no file.py:Class"),
         (f'source = "{HERE / "brick.py"}"', "brick.py is no .fmu and no file.py:Class"),
         (f'source = "{HERE / "brick.py"}:truth"', "cannot be made of a scenario"),
+        ('variant = "vehicle"\nsource = "car.fmu"', '`source` is for `variant = "own"`'),
         ("", "needs the file of the car as `source`"),
     ],
 )
 def test_a_car_that_cannot_be_had_is_refused_in_one_sentence(vehicle, named, scenario, tmp_path):
     build_unit(tmp_path / "car.fmu", 2)
     with pytest.raises(ConfigError, match=named):
-        Plant(scenario(f'variant = "own"\n{vehicle}'))
+        Plant(scenario(vehicle if "variant" in vehicle else f'variant = "own"\n{vehicle}'))
+
+
+CAR = """
+class Car:
+    def __init__(self, scenario): pass
+    def advance(self, demand, time_s, duration_s): {advance}
+    def observe(self, demand, row): {observe}
+"""
+
+
+@pytest.mark.parametrize(
+    ("advance", "observe", "named"),
+    [
+        ("1 / 0", "pass", "car.py:Car: fails in `advance` .ZeroDivisionError"),
+        ("pass", "row.speed", "car.py:Car: fails in `observe` .AttributeError"),
+        ("pass", "row[2] = float('nan')", "car.py:Car: tells no number as speed_mps"),
+    ],
+)
+def test_a_class_that_fails_is_told_by_its_name(advance, observe, named, scenario, tmp_path):
+    (tmp_path / "car.py").write_text(CAR.format(advance=advance, observe=observe))
+    own = scenario('variant = "own"\nsource = "car.py:Car"')
+    with pytest.raises(ConfigError, match=named):
+        check_own_car(own)
 
 
 def test_a_class_in_a_file_is_a_car(scenario):

@@ -58,6 +58,7 @@ def test_only_writable_folders_change(tmp_path: Path) -> None:
 
 
 def test_a_signal_reaches_the_command() -> None:
+    # A shell obeys a trap between two commands only: each must be short.
     script = "trap 'exit 3' USR1; echo ready; while :; do sleep 0.05; done"
     with subprocess.Popen([WITH_VCAN, "sh", "-c", script], stdout=subprocess.PIPE) as launcher:
         assert launcher.stdout is not None
@@ -77,4 +78,4 @@ def test_nothing_survives_a_killed_launcher(tmp_path: Path) -> None:
     deadline_s = time.monotonic() + LIMIT_S
     while list(tmp_path.iterdir()):  # the folder goes last, after every process of the guest
         assert time.monotonic() < deadline_s
-        time.sleep(0.01)
+        time.sleep(0.01)  # nobody is left who could tell: it has to be looked at

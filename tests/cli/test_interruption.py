@@ -81,7 +81,7 @@ class Interrupted:
             while True:
                 os.killpg(self._child.pid, 0)
                 assert time.monotonic() < deadline_s, "somebody was left behind"
-                time.sleep(0.01)
+                time.sleep(0.01)  # a group has to be looked at: nobody tells of its end
 
     def clean_up(self) -> None:
         with suppress(ProcessLookupError):

@@ -104,7 +104,7 @@ class Candump:
         deadline_s = time.monotonic() + PATIENCE_S
         while not _waits_at_a_socket(self.process.pid):
             assert time.monotonic() < deadline_s, "candump does not listen"
-            time.sleep(0.001)
+            time.sleep(0.001)  # /proc has to be looked at: it tells of no change
 
     def lines(self) -> list[str]:
         """Wait for all frames; each line reads `(seconds) vcan0 ID#DATA`."""

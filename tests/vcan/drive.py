@@ -25,7 +25,7 @@ from tcs_hil.signals import BusCondition, TcsState
 from .conftest import CHANNEL
 
 PATIENCE_S = 10.0  # of simulated time
-POLL_S = 0.05
+POLL_S = 0.05  # a recording has to be looked at: its writer, in the tick, tells nobody
 PERIOD_S = 0.002
 RELEASE_NMPS = 500.0
 SNOW = """

@@ -5,18 +5,19 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from needs import needs
 
 from .conftest import PLACE
 from .systemd_guest import SYSTEMD, Manager, booted, install
 
-pytestmark = [
-    pytest.mark.skipif(PLACE != "uml", reason="changes /etc: only where changes are thrown away"),
-    pytest.mark.skipif(not SYSTEMD.exists(), reason="systemd is not installed"),
-]
+pytestmark = pytest.mark.skipif(
+    PLACE != "uml", reason="changes /etc: only where changes are thrown away"
+)
 
 
 @pytest.fixture(scope="module")
 def systemd() -> Iterator[Manager]:
+    needs(SYSTEMD.exists(), "systemd")
     install("tcs-hil", "tcs-hil-metrics", "tcs-hil-record")
     configuration = Path("/etc/tcs-hil/tcs-hil.toml")
     text = configuration.read_text()

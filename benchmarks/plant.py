@@ -74,7 +74,12 @@ def stepping(variant: Literal["quarter-car", "vehicle"], *, sensors: bool) -> Ca
     car = Plant(load_scenario("manoeuvre-1").with_variant(variant))
     if not sensors:
         return lambda: car.step(LIMITS, PERIOD_S)
-    return lambda: (car.step(LIMITS, PERIOD_S), car.signals(), car.row)
+
+    def tick() -> object:
+        car.step(LIMITS, PERIOD_S)
+        return car.signals(), car.row
+
+    return tick
 
 
 class _Nowhere:

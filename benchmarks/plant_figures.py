@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -24,8 +25,8 @@ mpl.use("Agg")
 
 MASS_KG, GRAVITY_MPS2, RADIUS_M = 1400.0, 9.81, 0.318
 WHEEL_KGM2, MOTOR_KGM2, GEAR = 0.95, 0.03, 3.0
-TRUTH = {"color": "tab:blue", "linewidth": 1.6}
-PEER = {"color": "black", "linestyle": "--", "linewidth": 1.2}
+TRUTH: dict[str, Any] = {"color": "tab:blue", "linewidth": 1.6}
+PEER: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth": 1.2}
 
 
 def save_all(folder: Path, say: Callable[[str], object]) -> None:
@@ -124,7 +125,7 @@ def half_shaft() -> Figure:
             5e-4,
         )
         wave = rows["shaft_twist_rad"][:, 0]
-        label = {"color": colour, "label": f"{damping:g} Nms/rad"}
+        label: dict[str, Any] = {"color": colour, "label": f"{damping:g} Nms/rad"}
         twist.plot(rows["time_s"], wave * 1e3, **label)
         bins = np.abs(np.fft.rfft(wave - wave[-200:].mean(), 2**15))
         spectrum.plot(np.fft.rfftfreq(2**15, 5e-4), bins / bins.max(), **label)

@@ -58,7 +58,8 @@ class Gate:
 
     def limit(self, wanted_nm: float, request_nm: float, permission: Permission) -> float:
         """Ceiling (Nm, or ``NO_LIMIT``) for the coming period."""
-        most_nm = max(request_nm, 0.0) if math.isfinite(request_nm) else BEYOND_ANY_REQUEST_NM
+        known = -math.inf < request_nm < math.inf
+        most_nm = max(request_nm, 0.0) if known else BEYOND_ANY_REQUEST_NM
         before_nm = min(self._ceiling_nm, most_nm)  # without a ceiling the request is in force
         target_nm = _target_nm(wanted_nm, before_nm, most_nm, permission)
         highest_nm = min(before_nm + self._rise(wanted_nm, before_nm, permission), most_nm)
@@ -95,4 +96,4 @@ class Gate:
 def _target_nm(wanted_nm: float, before_nm: float, most_nm: float, permission: Permission) -> float:
     if permission is RELEASE:
         return most_nm
-    return wanted_nm if math.isfinite(wanted_nm) else before_nm
+    return wanted_nm if -math.inf < wanted_nm < math.inf else before_nm

@@ -81,7 +81,7 @@ class DrivelineOptimiser:
 
 def _or_else(value: float, steady: float) -> float:
     """What no sensor says is taken from the steady state."""
-    return value if math.isfinite(value) else steady
+    return value if -math.inf < value < math.inf else steady
 
 
 def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedController:

@@ -24,7 +24,7 @@ def settled(wheel: WheelState, torque_ref_nm: float) -> Proposal | None:
     ``NO_LIMIT``: not ours to judge.  A negative one (braking) and an unknown
     wheel leave the request as it is.  All three are ``BAD_INPUT``.
     """
-    if not math.isfinite(torque_ref_nm):
+    if not -math.inf < torque_ref_nm < math.inf:
         return UNUSABLE_REQUEST
     if torque_ref_nm < 0.0 or not _plausible(wheel):
         return Proposal(torque_ref_nm, BAD_INPUT)
@@ -34,7 +34,7 @@ def settled(wheel: WheelState, torque_ref_nm: float) -> Proposal | None:
 def decided(proposal: Proposal) -> bool:
     """Whether the law has made up its mind by itself."""
     undecided = proposal.status is FAILED or proposal.status is BAD_INPUT
-    return not undecided and math.isfinite(proposal.torque_nm)
+    return not undecided and -math.inf < proposal.torque_nm < math.inf
 
 
 def _plausible(wheel: WheelState) -> bool:

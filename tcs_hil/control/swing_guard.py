@@ -101,8 +101,8 @@ class SwingGuard:
         self._asked_nm = torque_ref_nm
 
     def _count(self, wheel: WheelState, sent_nm: float) -> None:
-        known = math.isfinite(wheel.motor_torque_nm)
-        torque_nm = wheel.motor_torque_nm if known else sent_nm
+        motor_nm = wheel.motor_torque_nm
+        torque_nm = motor_nm if -math.inf < motor_nm < math.inf else sent_nm
         speed_mps = max(wheel.vehicle_speed_mps, LEAST_SLIP_MPS)
         self._slip.update(wheel.slip_ratio, max(LEAST_SLIP_RATIO, LEAST_SLIP_MPS / speed_mps))
         self._torque.update(torque_nm, LEAST_NM)

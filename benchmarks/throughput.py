@@ -5,7 +5,8 @@
 
 A run is driven whole, as a campaign's worker does it: plant, sensors, codec, E2E, wire and the
 service's pipeline, with everything that is set up for it.  CPU time of the thread, the best of
-several runs: other programs then count little.
+several runs: other programs then count little.  OPENBLAS_NUM_THREADS=1, as Dask sets it for its
+workers, keeps the set-up's linear algebra from waiting for threads.
 """
 
 from __future__ import annotations

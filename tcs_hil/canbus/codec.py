@@ -109,14 +109,21 @@ def _encoder_source(length: int, signals: Sequence[SignalSpec]) -> str:
 
 def _raw_assignment(index: int, signal: SignalSpec) -> str:
     low, high = signal.raw_range
-    steps = (
-        f"v{index}" if _is_plain(signal) else f"(v{index} - {signal.offset!r}) / {signal.scale!r}"
-    )
+    if _is_plain(signal) and (low, high) == (0, 1):
+        return f"    r{index} = v{index} > 0.5"  # a flag: rounded, saturated and no NaN at once
+    steps = _steps(index, signal)
     rest = min(max(round(-signal.offset / signal.scale), low), high)
     return (
         f"    r{index} = round(x) if {low} <= (x := {steps}) <= {high}"
         f" else saturate(x, {low}, {high}, {rest})"
     )
+
+
+def _steps(index: int, signal: SignalSpec) -> str:
+    if _is_plain(signal):
+        return f"v{index}"
+    above = f"(v{index} - {signal.offset!r})" if signal.offset else f"v{index}"
+    return f"{above} / {signal.scale!r}"
 
 
 def _word(length: int, order: str, signals: Sequence[tuple[int, SignalSpec]]) -> str:

@@ -51,7 +51,7 @@ def simulate(
     commands = []
     while not car.finished:
         for frame in car.speak():
-            node.feed(*frame)
+            node.feed(frame.frame_id, frame.data, frame.stamp_ns)
         command = pipeline.step(node.measurement(car.now_ns))
         for frame_id, data in node.frames(command, car.now_ns):
             car.hear(frame_id, data)

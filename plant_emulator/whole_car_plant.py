@@ -96,9 +96,11 @@ def _hold_or_release(moving: Moving, demand: Demand, road: Array) -> None:
     state, (left_nm, right_nm) = moving.state, demanded(demand, 0.0)
     asked_nm, held = left_nm + right_nm, not math.isnan(state[HELD_AT])
     if not held and asked_nm <= 0.0 and _stands(state, moving.car.body.wheel_radius_m):
-        state[HELD_AT : HELD_AT + 4] = state[ANGLE : ANGLE + 4]
+        for wheel in range(4):  # a loop: slices take the compiler seconds
+            state[HELD_AT + wheel] = state[ANGLE + wheel]
     elif held and asked_nm > _slope_torque(moving, road):
-        state[HELD_AT : HELD_AT + 4] = math.nan
+        for wheel in range(4):
+            state[HELD_AT + wheel] = math.nan
 
 
 @compiled

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cli.ended import TcsHil
 from click.testing import CliRunner, Result
 
 from tcs_hil.cli.identify import command
@@ -101,3 +102,35 @@ def test_options_that_do_not_fit_together_are_refused(
     error = identify(*arguments).exception
     assert isinstance(error, ConfigError)
     assert complaint in str(error)
+
+
+def test_a_run_of_the_bench_becomes_a_bank_that_drives(tcs_hil: TcsHil, tmp_path: Path) -> None:
+    """From the bus log and from its MF4, which hold the same frames on different clocks."""
+    (tmp_path / "pedal.toml").write_text(pedal())
+    out = ("--mode", "in-process", "-j", "1", "--out", str(tmp_path))
+    assert tcs_hil("hil", str(tmp_path / "pedal.toml"), *out).status == 0
+    run, bank = tmp_path / "runs" / "pedal" / "off", tmp_path / "bank.npz"
+    assert tcs_hil("export", str(run), "-o", str(tmp_path / "drive.mf4")).status == 0
+    banks = []
+    for drive in (run / "bus.blf", tmp_path / "drive.mf4"):
+        refine = ("identify", "--preset", "default", "--from", str(drive), "--output", str(bank))
+        refined = json.loads(tcs_hil(*refine, "--json").out)
+        errors = [pair for pair in refined["errors"] if pair["after"]["predictions"]]
+        assert all(p["after"]["many_steps"] < p["before"]["many_steps"] for p in errors)
+        assert errors
+        banks.append(bank.read_bytes())
+    assert banks[0] == banks[1]
+    (tmp_path / "mine.toml").write_text('model = "bank.npz"')
+    mine = ("--config", str(tmp_path / "mine.toml"), "--controller", "kmpc")
+    assert tcs_hil("hil", str(tmp_path / "pedal.toml"), *mine, *out).status == 0
+
+
+def pedal() -> str:
+    """A scenario whose pedal jumps every 30 ms: what a band learns from must move by itself."""
+    steps = np.random.default_rng(3).uniform(40.0, 140.0, 100).round(1).tolist()
+    points = [[round(0.03 * k + t, 3), nm] for k, nm in enumerate(steps) for t in (0.0, 0.029)]
+    return (
+        'description = "a restless foot"\nduration_s = 3.0\nstart_speed_kmph = 15.0\n'
+        f'controller = {{ kind = "off" }}\nroad = [{{ mu = 0.6 }}]\n'
+        f"driver = {{ request = {points} }}\n"
+    )

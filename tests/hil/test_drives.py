@@ -99,6 +99,25 @@ def mismatch_nm(runs: Runs, shift: int) -> float:
     return float(np.abs(expected - torque[1:])[20:-20].max())
 
 
+def test_what_goes_before_the_motors_are_heard_is_left_out(log: Path, tmp_path: Path) -> None:
+    motors = load_database().messages["MotorState"].frame_id
+    cut = tmp_path / "cut.blf"
+    with can.LogReader(str(log)) as whole, can.Logger(str(cut)) as write:
+        for message in whole:
+            if message.arbitration_id != motors or message.timestamp > 1.7e9 + 0.1:
+                write(message)
+    runs = read_drive(cut, SETTINGS, VEHICLE)
+    assert len(runs.speed_mps) == pytest.approx(TICKS - 50, abs=10)
+    assert np.isfinite(runs.sample.motor_torque_nm).all()
+
+
+def test_an_exported_csv_is_told_which_columns_it_would_need(tmp_path: Path) -> None:
+    path = tmp_path / "export.csv"
+    path.write_text('# start: 2026\n"time_s","MotorState.MotorSpeedL [rad/s]"\n0.0,1.0\n')
+    with pytest.raises(ConfigError, match="needs two rows and the columns speed_mps, "):
+        read_drive(path, SETTINGS, VEHICLE)
+
+
 def test_a_csv_of_one_wheel_is_read_by_its_header(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
     rows = "\n".join(f"{k},{6 + k},{20 + k},{60 + 3 * k},{90 + k},{100 + k}" for k in range(3))

@@ -1,13 +1,17 @@
-"""MF4 (ASAM MDF 4): a channel group per message, one for telemetry, one for truth."""
+"""MF4 (ASAM MDF 4): channel groups of each message, the telemetry, the truth, and the frames."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
+import can
+import numpy as np
 from asammdf import MDF, Signal
+from asammdf.blocks.source_utils import Source
+from can.io.mf4 import STD_DTYPE
 
 from tcs_hil.hil.export.table import NS_PER_S, Channel, Run, Table
 
@@ -22,6 +26,8 @@ def write(path: Path, run: Run) -> None:
         mdf.header.comment = _header_comment(run.description)
         for table in run.decoded:
             _append(mdf, table)
+        if run.frames:
+            _append_frames(mdf, run.frames)
         mdf.save(path, overwrite=True, compression=DEFLATE_TRANSPOSED)
 
 
@@ -49,6 +55,20 @@ def _append(mdf: MDF, table: Table) -> None:
         for channel in table.channels
     ]
     mdf.append(signals, acq_name=table.name, comment=table.comment, common_timebase=True)
+
+
+def _append_frames(mdf: MDF, frames: Sequence[can.Message]) -> None:
+    """The bus as it was, as bus loggers put it and python-can reads it."""
+    rows = np.zeros(len(frames), STD_DTYPE)
+    for row, frame in zip(rows, frames, strict=True):
+        row["CAN_DataFrame.ID"] = frame.arbitration_id
+        row["CAN_DataFrame.IDE"] = frame.is_extended_id
+        row["CAN_DataFrame.DLC"] = frame.dlc
+        row["CAN_DataFrame.DataLength"] = len(frame.data)
+        row["CAN_DataFrame.DataBytes"][: len(frame.data)] = frame.data
+    bus = Source("CAN", "CAN", "", Source.SOURCE_BUS, Source.BUS_TYPE_CAN)
+    time_s = np.array([frame.timestamp for frame in frames])
+    mdf.append(Signal(rows, time_s, name="CAN_DataFrame", source=bus))
 
 
 def _conversion(channel: Channel) -> dict[str, object] | None:

@@ -30,9 +30,18 @@ def written(run: Run, path: Path) -> Path:
 def test_mf4_has_a_group_for_each_source_on_one_time_base(run: Run, tmp_path: Path) -> None:
     with MDF(written(run, tmp_path / "run.mf4")) as mdf:
         names = [group.channel_group.acq_name for group in mdf.groups]
-        assert names == [table.name for table in run.tables]
+        assert names == [*(table.name for table in run.tables), "CAN"]
         for name in ("WheelSpeedsFront.WheelSpeedFL", "telemetry.limit_fl_nm", "truth.limit_fl_nm"):
             np.testing.assert_allclose(mdf.get(name).timestamps, GRID_S, rtol=1e-12)
+
+
+def test_mf4_holds_the_bus_as_python_can_reads_it(run: Run, tmp_path: Path) -> None:
+    with can.LogReader(written(run, tmp_path / "run.mf4")) as reader:
+        read = list(reader)
+    assert [(each.arbitration_id, bytes(each.data)) for each in read] == [
+        (each.arbitration_id, bytes(each.data)) for each in run.frames
+    ]
+    assert read[-1].timestamp - read[0].timestamp == pytest.approx(GRID_S[-1], abs=2e-6)
 
 
 def test_mf4_gives_values_units_comments_and_labels(run: Run, tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from tcs_hil.cli.progress import progress_bar
 from tcs_hil.config import convert
 from tcs_hil.console import counted, refuse
 from tcs_hil.errors import ConfigError
-from tcs_hil.hil.interruption import interrupted_by_sigterm
+from tcs_hil.hil.processes.interruption import interrupted_by_sigterm
 from tcs_hil.hil.study.design import corners, points
 from tcs_hil.hil.study.plan import Plan, Study, read_plan
 from tcs_hil.hil.study.trial import Row, job, run

@@ -16,8 +16,8 @@ from tcs_hil.cli.progress import progress_bar
 from tcs_hil.console import NAME
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.demo import Demo, Outcome, run_demo
-from tcs_hil.hil.interruption import interrupted_by_sigterm
 from tcs_hil.hil.machine import describe_machine
+from tcs_hil.hil.processes.interruption import interrupted_by_sigterm
 from tcs_hil.hil.report.page import write_report
 from tcs_hil.hil.suite.provenance import sum_up
 from tcs_hil.hil.table import (

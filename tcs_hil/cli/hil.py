@@ -15,8 +15,8 @@ from tcs_hil.cli.progress import progress_bar
 from tcs_hil.cli.verdicts import show
 from tcs_hil.console import refuse
 from tcs_hil.errors import ConfigError
-from tcs_hil.hil.interruption import interrupted_by_sigterm
 from tcs_hil.hil.judging.verdict import Verdict
+from tcs_hil.hil.processes.interruption import interrupted_by_sigterm
 from tcs_hil.hil.report.page import write_report
 from tcs_hil.hil.run import MODES
 from tcs_hil.hil.suite.case import Case, check_cases, distinct, with_law

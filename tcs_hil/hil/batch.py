@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from plant_emulator.scenario import Scenario
 from tcs_hil.hil.metrics import Score, score
-from tcs_hil.hil.processes import spawned
+from tcs_hil.hil.processes.program import spawned
 from tcs_hil.hil.simulation import simulate
 from tcs_hil.service.settings import ServiceConfig
 

@@ -16,7 +16,7 @@ from tcs_hil.control.settings import ControlSettings, PresetName
 from tcs_hil.hil.figures import Line, save_prediction_figure, save_slip_figure
 from tcs_hil.hil.metrics import SlipMetrics, Truth, slip_metrics
 from tcs_hil.hil.paper import MANOEUVRES
-from tcs_hil.hil.processes import ProcessError
+from tcs_hil.hil.processes.program import ProcessError
 from tcs_hil.hil.run import Mode, RunFiles
 from tcs_hil.hil.suite.case import Case
 from tcs_hil.hil.suite.result import Result

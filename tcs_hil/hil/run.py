@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from plant_emulator.scenario import Scenario
 from tcs_hil.hil.in_process import drive_in_process
 from tcs_hil.hil.metrics import Truth
-from tcs_hil.hil.processes import program
+from tcs_hil.hil.processes.program import program
 from tcs_hil.hil.toml import write_toml
 from tcs_hil.runtime.recording import read
 from tcs_hil.service.settings import ServiceConfig, TickSettings

@@ -116,8 +116,8 @@ def test_while_it_loads_a_command_ends_without_a_word(
 @pytest.mark.parametrize(
     ("command", "module", "kind"),
     [
-        ("hil", "tcs_hil.hil.warm", "forkserver"),
-        ("demo", "tcs_hil.hil.warm", "forkserver"),
+        ("hil", "tcs_hil.hil.processes.warm", "forkserver"),
+        ("demo", "tcs_hil.hil.processes.warm", "forkserver"),
         ("campaign", "distributed", "--multiprocessing-fork"),
     ],
 )

@@ -12,7 +12,7 @@ from msgspec import structs
 from plant_emulator.scenario import load_scenario
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.metrics import slip_metrics
-from tcs_hil.hil.processes import ProcessError
+from tcs_hil.hil.processes.program import ProcessError
 from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.service.settings import BusSettings, ControllerName, ServiceConfig, read_service

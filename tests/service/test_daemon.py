@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from tcs_hil.canbus.bus import open_bus
-from tcs_hil.hil.processes import Program, program
+from tcs_hil.hil.processes.program import Program, program
 from tcs_hil.runtime.recording import read
 from tcs_hil.signals import TcsState
 

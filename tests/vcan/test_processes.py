@@ -13,7 +13,7 @@ from plant_emulator.scenario import load_scenario
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.metrics import slip_metrics
-from tcs_hil.hil.processes import Program, program
+from tcs_hil.hil.processes.program import Program, program
 from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.runtime.recording import read

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from plant_emulator.scenario import load_scenario
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.hil.logs.sources import Sources, find_sources
-from tcs_hil.hil.processes import program
+from tcs_hil.hil.processes.program import program
 from tcs_hil.hil.replay.recorded import Grid
 from tcs_hil.hil.replay.session import Verdict, recorded_config, replay_live
 from tcs_hil.hil.replay.story import tell

@@ -11,7 +11,7 @@ import pytest
 
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.canbus.port import CanPort
-from tcs_hil.hil.processes import program
+from tcs_hil.hil.processes.program import program
 from tcs_hil.runtime.clock import MonotonicClock
 from tcs_hil.runtime.recording import read
 

@@ -19,7 +19,7 @@ from plant_emulator.scenario import Scenario, load_scenario
 from tcs_hil.canbus.bus import choose_interface
 from tcs_hil.hil.bench.effort import Effort, Progress
 from tcs_hil.hil.bench.statistics import Statistics
-from tcs_hil.hil.processes import program, spawned
+from tcs_hil.hil.processes.program import program, spawned
 from tcs_hil.hil.run import SERVICE_PHASE_US, RunPlan, execute
 from tcs_hil.hil.toml import write_toml
 from tcs_hil.runtime.clock import MonotonicClock

@@ -16,8 +16,8 @@ from tcs_hil.hil.bench.candidates import Candidate, candidates
 from tcs_hil.hil.bench.effort import Effort, Progress
 from tcs_hil.hil.bench.recorded import Drive, Question, record_drive
 from tcs_hil.hil.bench.statistics import Cost, Stopwatch, quiet_collector
-from tcs_hil.hil.interruption import uninterrupted
 from tcs_hil.hil.paper import SOLVE_TIMES, SolveTime
+from tcs_hil.hil.processes.interruption import uninterrupted
 from tcs_hil.service.settings import ServiceConfig
 
 MANOEUVRES = ("manoeuvre-1", "manoeuvre-2")

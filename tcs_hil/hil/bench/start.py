@@ -18,7 +18,7 @@ from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import TcsError
 from tcs_hil.hil.bench.candidates import PREDICTIVE, backends
 from tcs_hil.hil.bench.effort import Effort, Progress
-from tcs_hil.hil.interruption import uninterrupted
+from tcs_hil.hil.processes.interruption import uninterrupted
 from tcs_hil.hil.toml import write_toml
 from tcs_hil.runtime.recording import read
 from tcs_hil.service.settings import BusSettings, RecorderSettings, ServiceConfig

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
 from tcs_hil.errors import ConfigError
-from tcs_hil.hil.interruption import uninterrupted
+from tcs_hil.hil.processes.interruption import uninterrupted
 from tcs_hil.hil.study.design import Point
 from tcs_hil.hil.study.plan import Plan
 from tcs_hil.hil.study.trial import Row, run

@@ -16,12 +16,12 @@ from msgspec import structs
 
 from tcs_hil.canbus.bus import open_bus
 from tcs_hil.errors import ConfigError, TcsError
-from tcs_hil.hil.interruption import uninterrupted
 from tcs_hil.hil.judging.evidence import Evidence
 from tcs_hil.hil.judging.measured import CannotJudgeError
 from tcs_hil.hil.judging.of_run import RUN_METRICS, Stretch, stretch
 from tcs_hil.hil.judging.verdict import Finding, Verdict, overall
-from tcs_hil.hil.processes import ProcessError, fork_server
+from tcs_hil.hil.processes.interruption import uninterrupted
+from tcs_hil.hil.processes.program import ProcessError, fork_server
 from tcs_hil.hil.report import picture
 from tcs_hil.hil.run import Mode, RunPlan, execute
 from tcs_hil.hil.suite.case import Case

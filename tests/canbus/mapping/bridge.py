@@ -8,7 +8,7 @@ from pathlib import Path
 
 import can
 
-from tcs_hil.hil.processes import Program, program
+from tcs_hil.hil.processes.program import Program, program
 
 from .makers import Maker
 from .translator import Frame, Translator

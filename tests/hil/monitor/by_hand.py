@@ -13,7 +13,7 @@ from tcs_hil.canbus.port import open_port
 from tcs_hil.hil.monitor.snapshot import Snapshot
 from tcs_hil.hil.monitor.sources import BusSource
 from tcs_hil.hil.monitor.view import Monitor
-from tcs_hil.hil.processes import program
+from tcs_hil.hil.processes.program import program
 
 PATIENCE_S = 30.0
 LOOK_S = 0.05

@@ -15,7 +15,7 @@ from tcs_hil.cli.replay import command
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
 from tcs_hil.hil.logs.sources import find_sources
-from tcs_hil.hil.processes import program
+from tcs_hil.hil.processes.program import program
 from tcs_hil.hil.replay.recorded import Grid
 from tcs_hil.hil.replay.session import recorded_config, replay_in_process
 from tcs_hil.hil.run import RunPlan, execute

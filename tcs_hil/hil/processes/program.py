@@ -17,13 +17,13 @@ from multiprocessing.pool import Pool
 from pathlib import Path
 
 from tcs_hil.errors import TcsError
-from tcs_hil.hil.child import run_module
-from tcs_hil.hil.interruption import uninterrupted
+from tcs_hil.hil.processes.child import run_module
+from tcs_hil.hil.processes.interruption import uninterrupted
 
 READY_TIMEOUT_S = 60.0
 STOP_TIMEOUT_S = 10.0
 PRELOADED = (
-    "tcs_hil.hil.warm",
+    "tcs_hil.hil.processes.warm",
     "tcs_hil.cli.run",
     "tcs_hil.cli.record",
     "plant_emulator.cli",

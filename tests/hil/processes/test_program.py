@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tcs_hil.hil.interruption import uninterrupted
-from tcs_hil.hil.processes import ProcessError, fork_server, program
+from tcs_hil.hil.processes.interruption import uninterrupted
+from tcs_hil.hil.processes.program import ProcessError, fork_server, program
 
 PATIENCE_S = 20.0
 
@@ -90,7 +90,7 @@ def test_a_program_does_not_outlive_a_bench_that_is_killed(script, tmp_path: Pat
     bench = textwrap.dedent(f"""
         from pathlib import Path
         import os, signal
-        from tcs_hil.hil.processes import program
+        from tcs_hil.hil.processes.program import program
         with program({name!r}, log=Path({str(log)!r})):
             os.kill(os.getpid(), signal.SIGKILL)
     """)

@@ -1,0 +1,1 @@
+"""What the bench starts: programs, workers, and how all of them end."""

@@ -11,7 +11,8 @@ import sys
 from setuptools import setup
 
 # Behaviour only.  mypyc loses the options of a msgspec struct, so settings and signals are not
-# here; numba wants the bytecode of what it compiles itself, so the plant's equations are not.
+# here; numba wants the bytecode of what it compiles itself, so the plant's equations are not; and
+# what is written for CasADi's symbols too (model/wheel.py) would have them made into numbers.
 TICK = {
     "tcs_hil": "gate pipeline supervisor",
     "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
@@ -20,7 +21,6 @@ TICK = {
     "tcs_hil/control": "bank_kmpc break_away carried_force compensated driveline_nmpc entry"
     " fallback force_disturbance guarded integrator native_bank native_driveline native_law pi"
     " plan screening sent speed_disturbance swing_guard swings",
-    "tcs_hil/model": "wheel",
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused held loop_delay side",
     "tcs_hil/plausibility": "driven rolling screen trace",
     "tcs_hil/runtime": "lockstep loop record recorder stopwatch transitions trigger",

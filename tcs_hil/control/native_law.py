@@ -46,9 +46,11 @@ class NativeLaw:
             torque_ref_nm,
         )
         torque_nm, next_nm = self._torques_nm
-        if next_nm != next_nm:  # noqa: PLR0124 - twice as quick as isnan
-            next_nm = math.nan  # the very object: proposals that are equal compare as equal
-        return Proposal(torque_nm, _STATUS[outcome & 3], outcome >> 2, next_nm)
+        status, iterations = _STATUS[outcome & 3], outcome >> 2
+        if math.isnan(next_nm):
+            # The default is the very object by which equal proposals compare as equal.
+            return Proposal(torque_nm, status, iterations)
+        return Proposal(torque_nm, status, iterations, next_nm)
 
     def reset(self) -> None:
         """Forget the integral and the last plan, as at start-up."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Final
 
@@ -27,12 +26,8 @@ class Plan:
 
     @property
     def next_nm(self) -> float:
-        """Torque meant for the period after the coming one, NaN after ``FAILED``.
-
-        A horizon of one means the same torque again.
-        """
-        failed = self.status is SolveStatus.FAILED
-        return math.nan if failed else self.inputs.item(min(1, self.inputs.size - 1))
+        """Torque meant for the period after the coming one; the same of a horizon of one."""
+        return self.inputs.item(min(1, self.inputs.size - 1))
 
 
 def mixed(plans: Sequence[Plan], weights: Sequence[float]) -> Plan:

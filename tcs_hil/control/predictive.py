@@ -35,7 +35,10 @@ class PredictiveController:
         if trivial is not None:
             return trivial
         plan = self._optimiser.plan(wheel, self._integral.value_s, torque_ref_nm)
-        torque_nm = self._first_input(plan, torque_ref_nm)
+        if plan.status is SolveStatus.FAILED:
+            self._optimiser.reset()  # what failed is no warm start
+            return Proposal(torque_ref_nm, plan.status, plan.iterations)
+        torque_nm = clamp(plan.inputs.item(0), torque_ref_nm)
         self._integral.advance(wheel.slip_ratio, torque_nm, torque_ref_nm)
         return Proposal(torque_nm, plan.status, plan.iterations, plan.next_nm)
 
@@ -43,9 +46,3 @@ class PredictiveController:
         """Forget the integral and the last plan, as at start-up."""
         self._integral.reset()
         self._optimiser.reset()
-
-    def _first_input(self, plan: Plan, torque_ref_nm: float) -> float:
-        if plan.status is SolveStatus.FAILED:
-            self._optimiser.reset()  # what failed is no warm start
-            return torque_ref_nm
-        return clamp(plan.inputs.item(0), torque_ref_nm)

@@ -5,7 +5,6 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from msgspec.structs import replace
 
 from plant_emulator.scenario import load_scenario
 from tcs_hil.control.bank_kmpc import BankOptimiser
@@ -28,7 +27,7 @@ def failing(plan: Callable[..., Plan]) -> Callable[..., Plan]:
         asked[optimiser] += 1
         found = plan(optimiser, *arguments)
         failed = FIRST <= asked[optimiser] <= LAST
-        return replace(found, status=SolveStatus.FAILED) if failed else found
+        return Plan(found.inputs, SolveStatus.FAILED, found.iterations) if failed else found
 
     return planned
 

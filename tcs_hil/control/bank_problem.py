@@ -101,10 +101,8 @@ def bands_of(bank: KoopmanBank, settings: ControlSettings) -> list[Band]:
 def output_weights(tuning: BankKmpcSettings, speed_mps: float) -> tuple[float, float]:
     """Weights (w_p, w_i) on the slip error and its integral at a vehicle speed.
 
-    Both fall with the square of the speed below ``soft_speed_mps``, where slip
-    answers torque so fast.  Above ``integral_speed_mps`` slip answers slowly, and
-    an integral as quick as at low speed would swing with it: w_i falls again.
+    Both go with the square of the speed, which weighs slip as slip speed: a motor
+    moves that as fast at any speed, so the loop is as quick at 3 m/s as at 30.
     """
-    soft = min(1.0, speed_mps / tuning.soft_speed_mps) ** 2
-    slow = min(1.0, tuning.integral_speed_mps / speed_mps) ** 2
-    return soft * tuning.weight_slip, soft * slow * tuning.weight_integral
+    share = (speed_mps / tuning.weights_speed_mps) ** 2
+    return share * tuning.weight_slip, share * tuning.weight_integral

@@ -94,10 +94,8 @@ class BankKmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     weight_change: PositiveWeight = 5e-2  # on (u_k - u_{k-1})²
     observer_time_s: TimeConstant = 0.03  # of the speed disturbance
     online_update: bool = False  # of the predictor, by the grip observed
-    soft_speed_mps: Speed = 4.0
-    """Below it slip answers torque so fast that its weights shrink with the speed squared."""
-    integral_speed_mps: Speed = 10.0
-    """Above it the integral's weight shrinks with the speed squared: slip answers slowly there."""
+    weights_speed_mps: Speed = 5.2
+    """Where the weights of slip and integral are as given; they go with the speed squared."""
 
 
 class DelaySettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

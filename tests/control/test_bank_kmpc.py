@@ -12,7 +12,7 @@ from scipy.optimize import lsq_linear
 from tcs_hil.control.bank_kmpc import BankOptimiser
 from tcs_hil.control.bank_law import bank_mpc
 from tcs_hil.control.bank_osqp import BandProblem
-from tcs_hil.control.bank_problem import INTEGRAL, bands_of
+from tcs_hil.control.bank_problem import INTEGRAL, bands_of, output_weights
 from tcs_hil.control.protocol import Controller, SolveStatus
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
@@ -37,16 +37,15 @@ def reference_plan(band: int, x: np.ndarray, last_nm: float, torque_ref_nm: floa
     tuning = SETTINGS.default.kmpc
     system = bands_of(BANK, SETTINGS)[band].system
     centre_mps = BANK.centre_mps[band]
-    soft = min(1.0, centre_mps / tuning.soft_speed_mps)
-    slow = min(1.0, tuning.integral_speed_mps / centre_mps)
+    share = centre_mps / tuning.weights_speed_mps
 
     def residuals(torques: np.ndarray) -> np.ndarray:
         state, previous, terms = x, last_nm, []
         for u in torques:
             state = system.a @ state + system.b[:, 0] * u
             error = state[Observable.SLIP_RATIO] - SETTINGS.slip_reference * state[Observable.ONE]
-            terms += [soft * tuning.weight_slip**0.5 * error]
-            terms += [soft * slow * tuning.weight_integral**0.5 * state[INTEGRAL]]
+            terms += [share * tuning.weight_slip**0.5 * error]
+            terms += [share * tuning.weight_integral**0.5 * state[INTEGRAL]]
             terms += [tuning.weight_reduction**0.5 * (torque_ref_nm - u)]
             terms += [tuning.weight_change**0.5 * (u - previous)]
             previous = u
@@ -98,6 +97,13 @@ def test_the_command_is_continuous_in_speed(border: float) -> None:
         return [law.step(wheel_at(speed_mps, 0.08, 100.0), 150.0).torque_nm for _ in range(5)][-1]
 
     assert abs(first(border * 1.0001) - first(border * 0.9999)) < 0.05
+
+
+def test_an_error_of_slip_speed_weighs_the_same_at_any_speed() -> None:
+    tuning = SETTINGS.default.kmpc
+    slip_mps = 0.1
+    costs = [output_weights(tuning, v)[0] * (slip_mps / v) ** 2 for v in (0.5, 5.0, 50.0)]
+    assert costs == pytest.approx([costs[1]] * 3)
 
 
 @pytest.mark.parametrize(("speed_mps", "peak"), [(1.0, 0.13), (6.0, 0.13), (25.0, 0.18)])

@@ -33,7 +33,9 @@ class BreakAway:
     fetches each lost grip back at once swings between sticking and sliding.  So
     the torque stays a little below the force for a while, and then grows until
     the driver's request is free again or the wheel breaks away once more: a slow
-    search in place of a limit cycle.
+    search in place of a limit cycle.  A wheel that slides before its tyre has
+    built up its force, as under a stab at the pedal, shows later what it carries:
+    the ceiling rises with that at once.
     """
 
     def __init__(self, slip_reference: float, vehicle: Vehicle, period_s: float) -> None:
@@ -47,15 +49,16 @@ class BreakAway:
     def ceiling_nm(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> float:
         """Most torque in [0, torque_ref_nm] that may follow ``sent_nm``; called once a tick."""
         self._carried.observe(wheel)
+        carried_nm = FORCE_SHARE * self._carried.torque_nm
         if self._has_broken_away(wheel):
             if self._calm_s > HOLD_S:
                 self._least_nm = SENT_SHARE * sent_nm
-            carried_nm = FORCE_SHARE * self._carried.torque_nm
             self._ceiling_nm = max(carried_nm, self._least_nm)
             self._calm_s = 0.0
         else:
             self._calm_s += self._period_s
-            self._ceiling_nm *= self._growth if self._calm_s > HOLD_S else 1.0
+            grown_nm = self._ceiling_nm * (self._growth if self._calm_s > HOLD_S else 1.0)
+            self._ceiling_nm = max(carried_nm, grown_nm)
         if self._ceiling_nm >= torque_ref_nm:
             self._ceiling_nm = math.inf
         return min(self._ceiling_nm, torque_ref_nm)

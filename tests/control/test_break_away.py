@@ -41,7 +41,7 @@ def test_the_ceiling_is_held_for_a_while_and_then_grows_until_it_binds_no_more(
 ) -> None:
     after(ceiling, STICKS, 0.5)
     held_nm = after(ceiling, SLIDES, 0.1)
-    assert after(ceiling, STICKS, HOLD_S - PERIOD_S) == held_nm
+    assert after(ceiling, STICKS, HOLD_S - PERIOD_S) == pytest.approx(held_nm, rel=1e-4)
     assert after(ceiling, STICKS, 0.5 * GROWTH_S) == pytest.approx(1.65 * held_nm, rel=0.02)
     assert after(ceiling, STICKS, 1.0) == REQUEST_NM
 
@@ -50,6 +50,13 @@ def test_a_force_seen_too_late_does_not_take_all_torque(ceiling: BreakAway) -> N
     unseen = replace(SLIDES, tyre_force_n=0.0)
     assert ceiling.ceiling_nm(unseen, REQUEST_NM, 100.0) == pytest.approx(70.0)
     assert ceiling.ceiling_nm(unseen, REQUEST_NM, 60.0) == pytest.approx(70.0)
+
+
+def test_a_force_that_builds_up_after_the_slide_lifts_the_ceiling_at_once(
+    ceiling: BreakAway,
+) -> None:
+    assert ceiling.ceiling_nm(replace(SLIDES, tyre_force_n=0.0), REQUEST_NM, 60.0) == 42.0
+    assert after(ceiling, STICKS, HOLD_S - PERIOD_S) == pytest.approx(0.95 * CARRIED_NM, rel=0.01)
 
 
 @pytest.mark.parametrize(

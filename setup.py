@@ -19,8 +19,8 @@ TICK = {
     " vehicle_node watch",
     "tcs_hil/canbus/mapping": "node",
     "tcs_hil/control": "bank_kmpc break_away carried_force compensated driveline_nmpc entry"
-    " fallback force_disturbance guarded integrator native_bank native_driveline native_law pi"
-    " plan screening sent speed_disturbance swing_guard swings",
+    " fallback force_disturbance friction_rise guarded integrator native_bank native_driveline"
+    " native_law pi plan screening sent speed_disturbance swing_guard swings",
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused held loop_delay side",
     "tcs_hil/plausibility": "driven rolling screen trace",
     "tcs_hil/runtime": "lockstep loop record recorder stopwatch transitions trigger",

@@ -21,20 +21,20 @@ class CarriedForce:
         self._slip_reference = slip_reference
         self._arm_m = vehicle.wheel_radius_m / vehicle.gear_ratio
         self._gain = 1.0 - math.exp(-period_s / FORCE_S)
-        self._force_n = 0.0
+        self.reset()
 
     @property
     def torque_nm(self) -> float:
         """At the motor; 0 before anything was seen."""
-        return self._force_n * self._arm_m
+        return self.force_n * self._arm_m
 
     def observe(self, wheel: WheelState) -> None:
         """See the wheel of one tick; a force nobody knows teaches nothing."""
         slides = wheel.slip_ratio > self._slip_reference
-        if slides or wheel.tyre_force_n > self._force_n:
-            surplus_n = wheel.tyre_force_n - self._force_n
-            self._force_n += self._gain * surplus_n if math.isfinite(surplus_n) else 0.0
+        if slides or wheel.tyre_force_n > self.force_n:
+            surplus_n = wheel.tyre_force_n - self.force_n
+            self.force_n += self._gain * surplus_n if math.isfinite(surplus_n) else 0.0
 
     def reset(self) -> None:
         """Nothing is known of the road."""
-        self._force_n = 0.0
+        self.force_n = 0.0  # 0 before anything was seen

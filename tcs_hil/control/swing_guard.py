@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from tcs_hil.control.carried_force import CarriedForce
+from tcs_hil.control.friction_rise import FrictionRise
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.swings import SwingMean, Swings
 from tcs_hil.model.vehicle import Vehicle
@@ -53,6 +54,7 @@ class SwingGuard:
     def __init__(self, slip_reference: float, vehicle: Vehicle, period_s: float) -> None:
         self._slip_reference = slip_reference
         self._carried = CarriedForce(slip_reference, vehicle, period_s)
+        self._rise = FrictionRise(slip_reference, period_s)
         self._period_s = period_s
         self._settling = 1.0 - math.exp(-period_s / SETTLING_S)
         self._growth = math.exp(period_s / GROWTH_S)
@@ -64,6 +66,7 @@ class SwingGuard:
         """Nothing swings."""
         self._forget_swings()
         self._carried.reset()
+        self._rise.reset()
         self._asked_nm = 0.0  # by the driver, a tick ago
         self._level_nm = self._least_nm = 0.0  # what the ceiling settles at while it is held
         self._ceiling_nm = math.inf
@@ -92,10 +95,12 @@ class SwingGuard:
 
     def _observe(self, wheel: WheelState, torque_ref_nm: float, sent_nm: float) -> None:
         self._calm_s += self._period_s
+        kicked = self._rise.shows(wheel, self._carried.force_n)
         self._carried.observe(wheel)
         stab_nm = self._period_s * STAB_NMPS
-        if self.holds or not 0.0 <= torque_ref_nm - self._asked_nm <= stab_nm:
-            self._forget_swings()  # what the driver sets swinging is no fault of the loop
+        stabbed = not 0.0 <= torque_ref_nm - self._asked_nm <= stab_nm
+        if self.holds or kicked or stabbed:
+            self._forget_swings()  # what road or driver set swinging is no fault of the loop
         else:
             self._count(wheel, sent_nm)
         self._asked_nm = torque_ref_nm

@@ -103,6 +103,17 @@ def test_the_driver_swinging_his_request_is_not_held(guard: SwingGuard) -> None:
         assert not guard.holds
 
 
+def test_a_wheel_that_swings_while_the_road_gives_more_is_not_held(guard: SwingGuard) -> None:
+    road = replace(wheel_at(6.0, 0.1, MEAN_NM), tyre_force_n=FORCE_N)
+    after(guard, road, 1.0)  # held at the reference
+    for tick in range(100):
+        time_s = tick * PERIOD_S
+        kick = replace(road, slip_ratio=0.02, tyre_force_n=9.0e4 * time_s)
+        wheel = replace(kick, motor_torque_nm=swing(60.0)(time_s))
+        guard.ceiling_nm(wheel, REQUEST_NM, MEAN_NM)
+        assert not guard.holds
+
+
 def test_after_the_hold_the_ceiling_grows_until_it_binds_no_more(guard: SwingGuard) -> None:
     held_after(guard, swing(30.0))
     hold_s(guard)

@@ -9,8 +9,9 @@ the wheel side of the gear.  With i the gear ratio, K and D of the half-shaft:
     T_motor'     = (u - T_motor) / lag
     omega_motor' = (i T_motor - K twist - D (omega_motor - omega)) / J_motor
     twist'       = omega_motor - omega
-    F_x'         = (F(kappa) + dF - F_x) / (relaxation / v_roll + 2.5 ms)
+    F_x'         = (F(kappa) + dF - F_x) / (relaxation(kappa) / v_roll + 2.5 ms)
 
+v_roll is the rim's speed, and 1.5 m/s more by their squares (`CREEP_MPS`).
 F(kappa) is the paper's tyre, dF the disturbance the observer holds it to.
 """
 
@@ -22,10 +23,11 @@ from typing import Any
 
 import casadi as ca
 
+from tcs_hil.control.driveline import CREEP_MPS
 from tcs_hil.control.least_squares import gauss_newton
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4, slip_ratio, tyre_force_n
+from tcs_hil.model.wheel import rk4, secant_ratio, slip_ratio, tyre_force_n
 
 NX = 7
 
@@ -92,8 +94,10 @@ def driveline_rate(
     twist_rate = motor_omega - omega
     shaft_nm = line.shaft_stiffness_nmprad * twist + line.shaft_damping_nmsprad * twist_rate
     omega_rate = (shaft_nm - force_n * radius_m) / line.wheel_inertia_kgm2
-    rolling_mps = ca.sqrt((omega * radius_m) ** 2 + car.slip_epsilon_m2ps2)
-    settling = 1.0 / (line.tyre_relaxation_m / rolling_mps + FASTEST_TYRE_S)
+    rolling_mps = ca.sqrt((omega * radius_m) ** 2 + CREEP_MPS**2)
+    sliding_m = line.tyre_sliding_m
+    relaxation_m = sliding_m + (line.tyre_relaxation_m - sliding_m) * secant_ratio(kappa, car, ca)
+    settling = 1.0 / (relaxation_m / rolling_mps + FASTEST_TYRE_S)
     return ca.vertcat(
         radius_m * omega_rate - 2.0 / car.mass_kg * force_n,
         omega_rate,

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
+from tcs_hil.control.driveline import CREEP_MPS
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import Tyre
+from tcs_hil.model.wheel import Tyre, secant_ratio
 
 
 class ForceDisturbance:
@@ -19,11 +20,11 @@ class ForceDisturbance:
     """
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
+        self._vehicle = vehicle
         self._tyre = Tyre(vehicle, math)
         self._radius_m = vehicle.wheel_radius_m
-        self._epsilon_m2ps2 = vehicle.slip_epsilon_m2ps2
         self._limit_n = vehicle.wheel_load_n
-        self._relaxation_m = settings.default.driveline.tyre_relaxation_m
+        self._driveline = settings.default.driveline
         self._period_s = settings.period_s
         self._gain = 1.0 - math.exp(-settings.period_s / settings.default.nmpc.observer_time_s)
         self._modelled_n = 0.0
@@ -48,5 +49,10 @@ class ForceDisturbance:
     def _settling(self, wheel: WheelState) -> float:
         """Share of the way to the static force that one period brings."""
         rim_mps = wheel.wheel_speed_radps * self._radius_m
-        rolling_mps = math.sqrt(rim_mps * rim_mps + self._epsilon_m2ps2)
-        return 1.0 - math.exp(-rolling_mps * self._period_s / self._relaxation_m)
+        rolling_mps = math.sqrt(rim_mps * rim_mps + CREEP_MPS * CREEP_MPS)
+        line = self._driveline
+        bent_m = line.tyre_relaxation_m - line.tyre_sliding_m
+        relaxation_m = line.tyre_sliding_m + bent_m * secant_ratio(
+            wheel.slip_ratio, self._vehicle, math
+        )
+        return 1.0 - math.exp(-rolling_mps * self._period_s / relaxation_m)

@@ -48,14 +48,18 @@ class SwingGuard:
     what they keep up, the loop feeds.  So after a few swings the torque is held,
     a little below its own mean, until they have died away, and then bounded by a
     ceiling that grows until it binds no more.  If the loop swings again, it is
-    held for longer.
+    held for longer.  What a stab at the pedal sets swinging has ``stab_rings_s``
+    to die away before anything is counted.
     """
 
-    def __init__(self, slip_reference: float, vehicle: Vehicle, period_s: float) -> None:
+    def __init__(
+        self, slip_reference: float, vehicle: Vehicle, period_s: float, stab_rings_s: float = 0.0
+    ) -> None:
         self._slip_reference = slip_reference
         self._carried = CarriedForce(slip_reference, vehicle, period_s)
         self._rise = FrictionRise(slip_reference, period_s)
         self._period_s = period_s
+        self._stab_rings_s = stab_rings_s
         self._settling = 1.0 - math.exp(-period_s / SETTLING_S)
         self._growth = math.exp(period_s / GROWTH_S)
         self._slip, self._torque, self._fed = (Swings(period_s) for _ in range(3))
@@ -73,6 +77,7 @@ class SwingGuard:
         self._left_s = 0.0  # of the hold
         self._hold_s = HOLD_S
         self._calm_s = math.inf  # since the last hold began
+        self._stabbed_s = math.inf  # since the driver last stabbed
 
     @property
     def holds(self) -> bool:
@@ -98,8 +103,9 @@ class SwingGuard:
         kicked = self._rise.shows(wheel, self._carried.force_n)
         self._carried.observe(wheel)
         stab_nm = self._period_s * STAB_NMPS
-        stabbed = not 0.0 <= torque_ref_nm - self._asked_nm <= stab_nm
-        if self.holds or kicked or stabbed:
+        stabs = not 0.0 <= torque_ref_nm - self._asked_nm <= stab_nm
+        self._stabbed_s = 0.0 if stabs else self._stabbed_s + self._period_s
+        if self.holds or kicked or stabs or self._stabbed_s < self._stab_rings_s:
             self._forget_swings()  # what road or driver set swinging is no fault of the loop
         else:
             self._count(wheel, sent_nm)

@@ -46,6 +46,24 @@ def slip_ratio(s: Any, omega: Any, vehicle: Vehicle) -> Any:
     return s * rim_speed / (rim_speed * rim_speed + vehicle.slip_epsilon_m2ps2)
 
 
+class Roots(Protocol):
+    """What the tyre's secant needs of them."""
+
+    @property
+    def sqrt(self) -> Callable[[Any], Any]:
+        """Square root."""
+        ...
+
+
+def secant_ratio(kappa: Any, vehicle: Vehicle, functions: Roots) -> Any:
+    """Tyre force over what the curve's slope at the origin would give, in (0, 1], within 0.04.
+
+    Without the sine's 0 / 0 at the origin.
+    """
+    bend = 1.3 * vehicle.tyre_b * kappa
+    return 1.0 / functions.sqrt(1.0 + bend * bend)
+
+
 class Tyre:
     """One vehicle's simplified Magic Formula, Eq. (tire_model), its parameters read once."""
 

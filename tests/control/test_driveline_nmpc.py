@@ -35,6 +35,7 @@ def rate(_: float, x: np.ndarray, torque_nm: float) -> list[float]:
     shaft_nm = 6000.0 * twist + 25.0 * (motor_omega - omega)
     omega_rate = (shaft_nm - 0.318 * force_n) / 0.95
     static_n = float(tyre_force_n(kappa, VEHICLE)) + DISTURBANCE_N
+    relaxation_m = 0.08 + 0.04 / math.hypot(1.0, 1.3 * VEHICLE.tyre_b * kappa)
     return [
         0.318 * omega_rate - 2.0 / 1400.0 * force_n,
         omega_rate,
@@ -42,7 +43,7 @@ def rate(_: float, x: np.ndarray, torque_nm: float) -> list[float]:
         (torque_nm - motor_nm) / 0.005,
         (3.0 * motor_nm - shaft_nm) / 0.27,
         motor_omega - omega,
-        (static_n - force_n) / (LINE.tyre_relaxation_m / math.sqrt(rim * rim + 0.1) + 0.0025),
+        (static_n - force_n) / (relaxation_m / math.hypot(rim, 1.5) + 0.0025),
     ]
 
 

@@ -114,6 +114,18 @@ def test_a_wheel_that_swings_while_the_road_gives_more_is_not_held(guard: SwingG
         assert not guard.holds
 
 
+def test_what_a_stab_sets_swinging_has_time_to_die_away() -> None:
+    stab_rings_s = 0.1
+    guard = SwingGuard(0.1, Vehicle(), PERIOD_S, stab_rings_s)
+    after(guard, CALM, 2.0 * stab_rings_s)
+    unprovoked_s = held_after(guard, swing(30.0))
+    guard.reset()
+    after(guard, CALM, 2.0 * stab_rings_s)
+    provoked_s = held_after(guard, swing(30.0), request_nm=REQUEST_NM - 50.0)
+    # The swings are 50 ms long, and counting begins anew in the middle of one.
+    assert provoked_s == pytest.approx(unprovoked_s + stab_rings_s, abs=0.05)
+
+
 def test_after_the_hold_the_ceiling_grows_until_it_binds_no_more(guard: SwingGuard) -> None:
     held_after(guard, swing(30.0))
     hold_s(guard)

@@ -14,6 +14,7 @@ from tcs_hil.model.wheel import (
     fastest_pole_per_s,
     rk4,
     rk4_step,
+    secant_ratio,
     slip_dynamics,
     slip_ratio,
     stable_substeps,
@@ -52,6 +53,13 @@ def test_the_tyre_peaks_at_slip_0121_with_its_full_friction():
     assert kappa[force.argmax()] == pytest.approx(0.1209, abs=2e-4)
     assert force.max() == pytest.approx(0.3 * 3433.5 * 1.2005, rel=1e-6)
     assert tyre_force_n(0.1, VEHICLE) / force.max() == pytest.approx(0.994, abs=5e-4)
+
+
+def test_the_tyres_secant_falls_with_slip_as_its_curve_does():
+    kappa = np.linspace(1e-3, 0.5, 500)
+    slope_n = tyre_force_n(1e-6, VEHICLE) / 1e-6
+    secant = tyre_force_n(kappa, VEHICLE) / (slope_n * kappa)
+    np.testing.assert_allclose(secant_ratio(kappa, VEHICLE, np), secant, rtol=0.0, atol=0.04)
 
 
 @pytest.mark.parametrize(

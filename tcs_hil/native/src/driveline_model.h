@@ -5,7 +5,7 @@
 
 #include "shooting.h"
 
-enum { DRIVELINE_PARAMETERS = 17, DRIVELINE_CONSTANTS = 11 };
+enum { DRIVELINE_PARAMETERS = 18, DRIVELINE_CONSTANTS = 13 };
 
 void driveline_fold(const double *restrict parameters,
                     double *restrict constants);

@@ -11,8 +11,7 @@ import sys
 from setuptools import setup
 
 # Behaviour only.  mypyc loses the options of a msgspec struct, so settings and signals are not
-# here; numba wants the bytecode of what it compiles itself, so the plant's equations are not; and
-# what is written for CasADi's symbols too (model/wheel.py) would have them made into numbers.
+# here; and numba wants the bytecode of what it compiles itself, so the plant's equations are not.
 TICK = {
     "tcs_hil": "gate pipeline supervisor",
     "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
@@ -22,8 +21,9 @@ TICK = {
     " fallback force_disturbance friction_rise guarded integrator native_bank native_driveline"
     " native_law pi plan screening sent speed_disturbance swing_guard swings",
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused held loop_delay side",
+    "tcs_hil/model": "tyre",
     "tcs_hil/plausibility": "driven rolling screen trace",
-    "tcs_hil/runtime": "lockstep loop record recorder stopwatch transitions trigger",
+    "tcs_hil/runtime": "clock lockstep loop record recorder stopwatch transitions trigger",
     "tcs_hil/hil": "busless simulation",
     "tcs_hil/hil/metrics": "ideal ideal_car",
     "plant_emulator": "emulator limit_keeper link pedal plant plant_faults recording sensor_set"

@@ -20,8 +20,8 @@ import casadi as ca
 from tcs_hil.control import driveline_transcription as driveline
 from tcs_hil.control.driveline import Driveline
 from tcs_hil.control.transcription import wheel_rate
+from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import slip_ratio
 
 SOURCES = Path(__file__).resolve().parent.parent / "tcs_hil" / "native" / "src"
 
@@ -88,7 +88,7 @@ def model(name: str, x: Any, inputs: Inputs, parameters: Any, rate: Any, car: An
 
 
 def runge_kutta(x: Any, inputs: Inputs, parameters: Any, rate: Any) -> tuple[Any, Any]:
-    """State (nx,) after a step of `tcs_hil.model.wheel.rk4`, and its derivatives (nx, nx + 1).
+    """State (nx,) after a step of `tcs_hil.model.tyre.rk4`, and its derivatives (nx, nx + 1).
 
     They go through the same stages as the state: to differentiate the whole step
     backwards would take twice the divisions.

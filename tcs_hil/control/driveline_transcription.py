@@ -26,8 +26,9 @@ import casadi as ca
 from tcs_hil.control.driveline import CREEP_MPS
 from tcs_hil.control.least_squares import gauss_newton
 from tcs_hil.control.settings import ControlSettings
+from tcs_hil.model.tyre import Tyre, slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4, secant_ratio, slip_ratio, tyre_force_n
+from tcs_hil.model.wheel import rk4
 
 NX = 7
 
@@ -95,8 +96,8 @@ def driveline_rate(
     shaft_nm = line.shaft_stiffness_nmprad * twist + line.shaft_damping_nmsprad * twist_rate
     omega_rate = (shaft_nm - force_n * radius_m) / line.wheel_inertia_kgm2
     rolling_mps = ca.sqrt((omega * radius_m) ** 2 + CREEP_MPS**2)
-    sliding_m = line.tyre_sliding_m
-    relaxation_m = sliding_m + (line.tyre_relaxation_m - sliding_m) * secant_ratio(kappa, car, ca)
+    tyre, sliding_m = Tyre(car, ca), line.tyre_sliding_m
+    relaxation_m = sliding_m + (line.tyre_relaxation_m - sliding_m) * tyre.secant_ratio(kappa)
     settling = 1.0 / (relaxation_m / rolling_mps + FASTEST_TYRE_S)
     return ca.vertcat(
         radius_m * omega_rate - 2.0 / car.mass_kg * force_n,
@@ -105,5 +106,5 @@ def driveline_rate(
         (torque_nm - motor_nm) / line.motor_lag_s,
         (car.gear_ratio * motor_nm - shaft_nm) / line.motor_inertia_kgm2,
         twist_rate,
-        (tyre_force_n(kappa, car, ca) + disturbance_n - force_n) * settling,
+        (tyre.force_n(kappa) + disturbance_n - force_n) * settling,
     )

@@ -7,8 +7,8 @@ import math
 from tcs_hil.control.driveline import CREEP_MPS
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
+from tcs_hil.model.tyre import Tyre
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import Tyre, secant_ratio
 
 
 class ForceDisturbance:
@@ -20,11 +20,12 @@ class ForceDisturbance:
     """
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
-        self._vehicle = vehicle
         self._tyre = Tyre(vehicle, math)
         self._radius_m = vehicle.wheel_radius_m
         self._limit_n = vehicle.wheel_load_n
-        self._driveline = settings.default.driveline
+        line = settings.default.driveline
+        self._sliding_m = line.tyre_sliding_m
+        self._bent_m = line.tyre_relaxation_m - line.tyre_sliding_m
         self._period_s = settings.period_s
         self._gain = 1.0 - math.exp(-settings.period_s / settings.default.nmpc.observer_time_s)
         self._modelled_n = 0.0
@@ -50,9 +51,7 @@ class ForceDisturbance:
         """Share of the way to the static force that one period brings."""
         rim_mps = wheel.wheel_speed_radps * self._radius_m
         rolling_mps = math.sqrt(rim_mps * rim_mps + CREEP_MPS * CREEP_MPS)
-        line = self._driveline
-        bent_m = line.tyre_relaxation_m - line.tyre_sliding_m
-        relaxation_m = line.tyre_sliding_m + bent_m * secant_ratio(
-            wheel.slip_ratio, self._vehicle, math
+        relaxation_m = self._sliding_m + self._bent_m * float(
+            self._tyre.secant_ratio(wheel.slip_ratio)
         )
         return 1.0 - math.exp(-rolling_mps * self._period_s / relaxation_m)

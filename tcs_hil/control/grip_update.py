@@ -12,8 +12,8 @@ from tcs_hil.control.plan import Plan, mixed
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.model.bank import KoopmanBank
+from tcs_hil.model.tyre import tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import tyre_force_n
 
 FORGETTING = 0.03
 """Weight of the newest tick: 70 ms of memory."""

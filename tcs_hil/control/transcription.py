@@ -23,8 +23,9 @@ import casadi as ca
 
 from tcs_hil.control.least_squares import gauss_newton_model
 from tcs_hil.control.settings import ControlSettings
+from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4, slip_dynamics, slip_ratio
+from tcs_hil.model.wheel import rk4, slip_dynamics
 
 NX = 3
 """State x = [s, omega, e_int]."""

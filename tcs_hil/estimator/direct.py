@@ -5,8 +5,8 @@ from __future__ import annotations
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.estimator.estimate import Estimate
 from tcs_hil.estimator.held import held
+from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import slip_ratio
 from tcs_hil.signals import FourWheels, Measurement, Pair
 
 

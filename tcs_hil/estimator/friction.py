@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from tcs_hil.model.tyre import Tyre
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import Tyre
 
 LEARNING_S: Final = 0.05
 FORGETTING_S: Final = 2.0

@@ -8,8 +8,8 @@ from tcs_hil.control.driveline import Driveline
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.estimator.driveline_observer import DrivelineObserver
 from tcs_hil.estimator.friction import FrictionEstimate
+from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import slip_ratio
 
 
 class Side:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from tcs_hil.model.dataset import state_at
 from tcs_hil.model.predictor import KoopmanPredictor
+from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4_step, slip_ratio, stable_substeps
+from tcs_hil.model.wheel import rk4_step, stable_substeps
 
 FloatArray = NDArray[np.float64]
 

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.model.ranges import Range, check_rising
+from tcs_hil.model.tyre import tyre_force_n
 from tcs_hil.model.vehicle import Positive, Vehicle
-from tcs_hil.model.wheel import rk4, tyre_force_n
+from tcs_hil.model.wheel import rk4
 
 FloatArray = NDArray[np.float64]
 

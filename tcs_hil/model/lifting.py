@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tcs_hil.errors import ModelError
 from tcs_hil.model.radial import KERNELS, Centres, RadialBasis, centre_count
 from tcs_hil.model.scaling import Scaling
+from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import slip_ratio
 
 FloatArray = NDArray[np.float64]
 

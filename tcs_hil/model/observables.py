@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tcs_hil.model.tyre import Functions, slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import Functions, slip_ratio
 
 FloatArray = NDArray[np.float64]
 

@@ -1,20 +1,19 @@
 """The paper's single-wheel dynamics, written once for floats, arrays and CasADi symbols.
 
-``s`` is the slip speed omega R - v in m/s and ``omega`` the wheel speed in
-rad/s.  The sine and arctangent come from the ``functions`` argument, so that
-the estimator (``math``), the data set (``numpy``) and the nonlinear MPC
-(``casadi``) share these equations instead of copying them.
+``s`` is the slip speed omega R - v in m/s and ``omega`` the wheel speed in rad/s; slip and
+tyre are those of ``tyre.py``.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tcs_hil.model.tyre import Functions, slip_ratio, tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
 
 FloatArray = NDArray[np.float64]
@@ -24,64 +23,6 @@ DEFAULT_SUBSTEPS = 4
 
 _STABLE_STEP = 2.5
 """Step times pole that RK4 still damps, with a margin to its limit of 2.785."""
-
-
-class Functions(Protocol):
-    """What the tyre needs from ``math``, ``numpy`` or ``casadi``."""
-
-    @property
-    def sin(self) -> Callable[[Any], Any]:
-        """Sine of an angle in rad."""
-        ...
-
-    @property
-    def atan(self) -> Callable[[Any], Any]:
-        """Arctangent, in rad."""
-        ...
-
-
-def slip_ratio(s: Any, omega: Any, vehicle: Vehicle) -> Any:
-    """Modified slip ratio kappa of Eq. (slip_mod); finite at standstill."""
-    rim_speed = omega * vehicle.wheel_radius_m
-    return s * rim_speed / (rim_speed * rim_speed + vehicle.slip_epsilon_m2ps2)
-
-
-class Roots(Protocol):
-    """What the tyre's secant needs of them."""
-
-    @property
-    def sqrt(self) -> Callable[[Any], Any]:
-        """Square root."""
-        ...
-
-
-def secant_ratio(kappa: Any, vehicle: Vehicle, functions: Roots) -> Any:
-    """Tyre force over what the curve's slope at the origin would give, in (0, 1], within 0.04.
-
-    Without the sine's 0 / 0 at the origin.
-    """
-    bend = 1.3 * vehicle.tyre_b * kappa
-    return 1.0 / functions.sqrt(1.0 + bend * bend)
-
-
-class Tyre:
-    """One vehicle's simplified Magic Formula, Eq. (tire_model), its parameters read once."""
-
-    def __init__(self, vehicle: Vehicle, functions: Functions = np) -> None:
-        # Of any type: for CasADi the parameters are symbols too.
-        self._peak_n: Any = vehicle.friction_ratio * vehicle.wheel_load_n * vehicle.tyre_d
-        self._c: Any = vehicle.tyre_c
-        self._b: Any = vehicle.tyre_b
-        self._sin, self._atan = functions.sin, functions.atan
-
-    def force_n(self, kappa: Any) -> Any:
-        """Longitudinal tyre force in N."""
-        return self._peak_n * self._sin(self._c * self._atan(self._b * kappa))
-
-
-def tyre_force_n(kappa: Any, vehicle: Vehicle, functions: Functions = np) -> Any:
-    """Longitudinal tyre force in N of a tyre that is asked once."""
-    return Tyre(vehicle, functions).force_n(kappa)
 
 
 def slip_dynamics(

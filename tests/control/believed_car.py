@@ -10,8 +10,8 @@ import numpy as np
 
 from tcs_hil.control.protocol import Controller, WheelState
 from tcs_hil.model.fleet import BODY, MOTOR, PATCH, TORQUE, WHEEL, Fleet, FleetSettings
+from tcs_hil.model.tyre import slip_ratio, tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import slip_ratio, tyre_force_n
 
 PERIOD_S, VEHICLE = 0.002, Vehicle()
 

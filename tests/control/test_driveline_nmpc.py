@@ -16,8 +16,8 @@ from tcs_hil.control.force_disturbance import ForceDisturbance
 from tcs_hil.control.least_squares import Linearisation
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
 from tcs_hil.control.settings import ControlSettings
+from tcs_hil.model.tyre import tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import tyre_force_n
 from tests.control.believed_car import chatter_nm, drive
 from tests.control.recorder import wheel_at
 

@@ -11,8 +11,8 @@ from tcs_hil.control.bank_law import bank_mpc
 from tcs_hil.control.grip_update import GripEstimate
 from tcs_hil.control.settings import BankKmpcSettings, ControlSettings, DefaultSettings
 from tcs_hil.model.bank import KoopmanBank, default_bank_path
+from tcs_hil.model.tyre import tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import tyre_force_n
 from tests.control.believed_car import Loop, chatter_nm, drive, nominal
 from tests.control.recorder import wheel_at
 

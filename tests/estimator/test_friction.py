@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tcs_hil.estimator.friction import FrictionEstimate
+from tcs_hil.model.tyre import tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import tyre_force_n
 
 VEHICLE = Vehicle()
 

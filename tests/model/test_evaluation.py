@@ -7,7 +7,7 @@ import pytest
 
 from tcs_hil.model.edmd import DEFAULT_SEED, IdentificationSettings, identify
 from tcs_hil.model.evaluation import EVALUATION_SEED, figure1, prediction_errors
-from tcs_hil.model.wheel import slip_ratio
+from tcs_hil.model.tyre import slip_ratio
 
 
 def test_open_loop_errors_are_as_small_as_the_method_allows(paper):

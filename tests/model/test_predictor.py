@@ -7,7 +7,8 @@ import pytest
 
 from tcs_hil.errors import ModelError
 from tcs_hil.model.predictor import KoopmanPredictor
-from tcs_hil.model.wheel import rk4_step, slip_ratio
+from tcs_hil.model.tyre import slip_ratio
+from tcs_hil.model.wheel import rk4_step
 
 
 def test_selection_and_slip_index_point_at_s_omega_and_slip(paper):

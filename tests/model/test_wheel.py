@@ -9,16 +9,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from tcs_hil.model.tyre import Tyre, slip_ratio, tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
 from tcs_hil.model.wheel import (
     fastest_pole_per_s,
     rk4,
     rk4_step,
-    secant_ratio,
     slip_dynamics,
-    slip_ratio,
     stable_substeps,
-    tyre_force_n,
 )
 
 VEHICLE = Vehicle()
@@ -59,7 +57,7 @@ def test_the_tyres_secant_falls_with_slip_as_its_curve_does():
     kappa = np.linspace(1e-3, 0.5, 500)
     slope_n = tyre_force_n(1e-6, VEHICLE) / 1e-6
     secant = tyre_force_n(kappa, VEHICLE) / (slope_n * kappa)
-    np.testing.assert_allclose(secant_ratio(kappa, VEHICLE, np), secant, rtol=0.0, atol=0.04)
+    np.testing.assert_allclose(Tyre(VEHICLE).secant_ratio(kappa), secant, rtol=0.0, atol=0.04)
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,9 @@ from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import SolveStatus, WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.control.transcription import NX, wheel_rate
+from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import rk4, slip_ratio
+from tcs_hil.model.wheel import rk4
 
 FloatArray = NDArray[np.float64]
 

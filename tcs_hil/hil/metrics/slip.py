@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tcs_hil.hil.metrics.truth import FRONT, Truth
+from tcs_hil.model.tyre import tyre_force_n
 from tcs_hil.model.vehicle import Vehicle
-from tcs_hil.model.wheel import tyre_force_n
 
 SPINNING_RATIO = 0.6
 """Slip at which a wheel is lost: far beyond every tyre's peak."""

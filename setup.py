@@ -11,7 +11,8 @@ import sys
 from setuptools import setup
 
 # Behaviour only.  mypyc loses the options of a msgspec struct, so settings and signals are not
-# here; and numba wants the bytecode of what it compiles itself, so the plant's equations are not.
+# here; numba wants the bytecode of what it compiles itself, so the plant's equations are not; and
+# a single call into C (control/native_law.py) is quicker from the interpreter.
 TICK = {
     "tcs_hil": "gate pipeline supervisor",
     "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
@@ -19,7 +20,7 @@ TICK = {
     "tcs_hil/canbus/mapping": "node",
     "tcs_hil/control": "bank_kmpc break_away carried_force compensated driveline_nmpc entry"
     " fallback force_disturbance friction_rise guarded integrator native_bank native_driveline"
-    " native_law pi plan screening sent speed_disturbance swing_guard swings",
+    " pi plan screening sent speed_disturbance swing_guard swings",
     "tcs_hil/estimator": "body_speed direct driveline_observer friction fused held loop_delay side",
     "tcs_hil/model": "tyre",
     "tcs_hil/plausibility": "driven rolling screen trace",

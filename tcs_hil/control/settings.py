@@ -70,7 +70,7 @@ class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     )
     weight_slip: Weight = 1e3
     weight_integral: Weight = 0.0
-    weight_reduction: PositiveWeight = 5e-6
+    weight_reduction: PositiveWeight = 8e-6
     weight_change: PositiveWeight = 4e-2  # on (u_k - u_{k-1})²
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 2
     leftover_nm: ClassVar[float] = 1e-3

@@ -21,7 +21,8 @@ def test_a_person_drives_onto_ice_and_gives_the_car_back(tmp_path: Path, channel
             [
                 ([], lambda s: s.state == "STANDBY"),
                 (["up"] * 20, lambda s: s.left.request_nm == 200.0),
-                (["left"], lambda s: s.state == "ACTIVE" and s.left.slip_ratio > 0.05),
+                # On the dry road 200 Nm slip by some 0.04: more than twice that is ice.
+                (["left"], lambda s: s.state == "ACTIVE" and s.left.slip_ratio > 0.09),
                 (["space"], lambda s: s.left.request_nm == 0.0),
             ],
         )

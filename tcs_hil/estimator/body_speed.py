@@ -23,6 +23,12 @@ SPEED_GAIN_PER_S: Final = 10.0
 BIAS_GAIN_PER_S2: Final = 10.0
 """Poles at 1.1 and 8.9 per second: slower than the gaps between edges, faster than most grades."""
 
+FIRST_SPEED_SHARE: Final = 2.0
+FIRST_BIAS_SHARE: Final = 10.0
+FIRST_S: Final = 0.3
+"""So much larger both gains begin on a car that rolls, with two poles at 10 per second: nothing is
+known of its grade.  The surplus dies away with this time constant."""
+
 MOST_PER_EDGE: Final = 0.5
 
 
@@ -32,7 +38,8 @@ class BodySpeed:
     b takes up its bias, the grade and the pitch.  A toothed sensor's speed is the
     mean over the time between two edges: it is compared with the speed half that
     time ago, once, when it appears on the bus.  The bus does not say how many
-    teeth there are; how long a value has stood does.
+    teeth there are; how long a value has stood does.  What is met rolling is
+    learnt with larger gains at first, as a Kalman filter would.
 
     A rear wheel shows zero until it has met two edges.  While the front wheels,
     seen through their motors, stand too, so does the car, and all the
@@ -43,9 +50,12 @@ class BodySpeed:
         self._period_s = period_s
         self._known = False  # the first speed is taken as it is
         self._bias_mps2 = 0.0
+        self._newness = 1.0  # of the bias: 1 while nothing is known of it
+        self._fading = 1.0 - math.exp(-period_s / FIRST_S)
         self._seen_mps: Pair = (math.nan, math.nan)
         self._stood_s = [0.0, 0.0]
         self.value_mps = 0.0
+        self.accel_mps2 = 0.0
 
     def update(
         self, rear_mps: Pair, trusted: tuple[bool, bool], accel_mps2: float, driven_mps: float
@@ -60,7 +70,8 @@ class BodySpeed:
         if driven_mps < STANDS_MPS and rear_mps == (0.0, 0.0):
             self._stand(rear_mps, accel_mps2)
             return self.value_mps
-        rate_mps2 = accel_mps2 - self._bias_mps2
+        rate_mps2 = self.accel_mps2 = accel_mps2 - self._bias_mps2
+        self._newness -= self._fading * self._newness
         self.value_mps = max(self.value_mps + self._period_s * rate_mps2, 0.0)
         self._hear(0, rear_mps[0], self._seen_mps[0], trusted[0], rate_mps2)
         self._hear(1, rear_mps[1], self._seen_mps[1], trusted[1], rate_mps2)
@@ -83,7 +94,7 @@ class BodySpeed:
 
     def _stand(self, rear_mps: Pair, accel_mps2: float) -> None:
         """Nothing turns: what is felt is the accelerometer's error and the grade."""
-        self.value_mps = 0.0
+        self.value_mps = self.accel_mps2 = self._newness = 0.0
         share = self._period_s / STANDING_S
         self._bias_mps2 += share * (accel_mps2 - self._bias_mps2)
         self._seen_mps = rear_mps
@@ -100,5 +111,12 @@ class BodySpeed:
         """Weigh one wheel's news by the time it stands for; two wheels share the gain."""
         weight_s = 0.5 * min(self._stood_s[side], STILL_S)
         self._stood_s[side] = 0.0
-        self.value_mps += min(SPEED_GAIN_PER_S * weight_s, MOST_PER_EDGE) * surprise_mps
-        self._bias_mps2 -= BIAS_GAIN_PER_S2 * weight_s * surprise_mps
+        speed_gain = SPEED_GAIN_PER_S * _grown(FIRST_SPEED_SHARE, self._newness) * weight_s
+        bias_gain = BIAS_GAIN_PER_S2 * _grown(FIRST_BIAS_SHARE, self._newness) * weight_s
+        self.value_mps += min(speed_gain, MOST_PER_EDGE) * surprise_mps
+        self._bias_mps2 -= bias_gain * surprise_mps
+
+
+def _grown(share: float, newness: float) -> float:
+    """Factor on a gain: from ``share`` down to 1."""
+    return 1.0 + (share - 1.0) * newness

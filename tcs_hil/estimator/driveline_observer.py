@@ -29,6 +29,7 @@ class DrivelineObserver:
 
     def __init__(self, driveline: Driveline, period_s: float) -> None:
         self._rows = _rows_of(driveline, period_s)
+        self._stiffness_nmprad = driveline.shaft_stiffness_nmprad
         self._x = [0.0, 0.0, 0.0, 0.0]
         self._input_nm = 0.0
         self._known = False
@@ -36,7 +37,9 @@ class DrivelineObserver:
     def update(self, shaft_input_nm: float, motor_radps: float) -> list[float]:
         """State [omega, omega_motor, twist, F_x R] from motor torque and speed at the wheel."""
         if not self._known:
-            self._x = [motor_radps, motor_radps, 0.0, 0.0]
+            # From no twist on, the wheel would seem to slow down for 50 ms, and a law to be free.
+            twist_rad = shaft_input_nm / self._stiffness_nmprad
+            self._x = [motor_radps, motor_radps, twist_rad, shaft_input_nm]
             self._known, self._input_nm = True, shaft_input_nm
             return self._x
         # A torque under control moves by tens of Nm a period: its mean is what turned the motor.
@@ -50,7 +53,7 @@ class DrivelineObserver:
         return self._x
 
     def reset(self) -> None:
-        """Nothing is known: the wheel turns like its motor."""
+        """Nothing is known: the wheel turns like its motor, and the tyre takes all its torque."""
         self._known = False
 
 

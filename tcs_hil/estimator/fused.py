@@ -8,6 +8,7 @@ from typing import Final
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.estimator.body_speed import BodySpeed
+from tcs_hil.estimator.edge_age import EdgeAge
 from tcs_hil.estimator.estimate import Estimate
 from tcs_hil.estimator.held import held
 from tcs_hil.estimator.loop_delay import LoopDelay
@@ -31,8 +32,10 @@ class FusedEstimator:
         driveline = settings.default.driveline
         self._body = BodySpeed(settings.period_s)
         self._left, self._right = (Side(driveline, vehicle, settings.period_s) for _ in range(2))
+        self._ages = tuple(EdgeAge(settings.period_s) for _ in range(2))
         self._delay = LoopDelay(settings.default.delay, driveline.motor_lag_s, settings.period_s)
         self._wheel_speed_radps: FourWheels = (0.0, 0.0, 0.0, 0.0)
+        self._sent_nm: Pair = (math.nan, math.nan)
         self.newest = Estimate(0.0, (WheelState.at_rest(), WheelState.at_rest()))
 
     def update(self, measurement: Measurement) -> Estimate:
@@ -56,6 +59,7 @@ class FusedEstimator:
     def sent(self, torque_nm: Pair, request_nm: Pair) -> None:
         """Hear, at the tick's end, what each motor may give of what the driver asks of it."""
         self._delay.sent(torque_nm, request_nm)
+        self._sent_nm = torque_nm
 
     def _body_speed_mps(self, m: Measurement) -> float:
         accel_mps2 = m.accel_x_mps2
@@ -80,7 +84,11 @@ class FusedEstimator:
     def _wheel(
         self, side: Side, index: int, m: Measurement, body_mps: float, delay_s: float
     ) -> WheelState:
+        accel_mps2, shown_radps = self._body.accel_mps2, self._wheel_speed_radps[index]
+        age_s = self._ages[index].update(shown_radps)
         if m.motor_age_s > MOTOR_PATIENCE_S:
-            return side.without_motor(self._wheel_speed_radps[index], body_mps, delay_s)
+            omega_radps = shown_radps + age_s * accel_mps2 / self._vehicle.wheel_radius_m
+            return side.without_motor(omega_radps, body_mps, delay_s, self._sent_nm[index])
         motor_radps, motor_nm = m.motor_speed_radps[index], m.motor_torque_nm[index]
-        return side.through_motor(motor_radps, motor_nm, body_mps, delay_s)
+        motion = body_mps, accel_mps2
+        return side.through_motor(motor_radps, motor_nm, motion, delay_s, self._sent_nm[index])

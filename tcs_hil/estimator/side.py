@@ -11,6 +11,9 @@ from tcs_hil.estimator.friction import FrictionEstimate
 from tcs_hil.model.tyre import slip_ratio
 from tcs_hil.model.vehicle import Vehicle
 
+Motion = tuple[float, float]
+"""Of the body: speed in m/s, and acceleration in m/s²."""
+
 
 class Side:
     """What is known about one side of the car."""
@@ -22,9 +25,15 @@ class Side:
         self.force_n = 0.0
 
     def through_motor(
-        self, motor_radps: float, motor_nm: float, body_mps: float, delay_s: float
+        self,
+        motor_radps: float,
+        motor_nm: float,
+        body: Motion,
+        delay_s: float,
+        sent_nm: float,
     ) -> WheelState:
         """Wheel state from speed and torque of the motor, both on its side of the gear."""
+        body_mps, body_mps2 = body
         gear, radius_m = self._vehicle.gear_ratio, self._vehicle.wheel_radius_m
         omega, _, twist_rad, tyre_nm = self._observer.update(gear * motor_nm, motor_radps / gear)
         self.force_n = tyre_nm / radius_m
@@ -40,10 +49,14 @@ class Side:
             motor_torque_nm=motor_nm,
             shaft_twist_rad=twist_rad,
             tyre_force_n=self.force_n,
+            vehicle_accel_mps2=body_mps2,
             loop_delay_s=delay_s,
+            sent_nm=sent_nm,
         )
 
-    def without_motor(self, omega_radps: float, body_mps: float, delay_s: float) -> WheelState:
+    def without_motor(
+        self, omega_radps: float, body_mps: float, delay_s: float, sent_nm: float
+    ) -> WheelState:
         """Wheel state from the wheel's own sensor; the motor is taken to turn with it."""
         self._observer.reset()
         self.force_n = 0.0
@@ -56,4 +69,5 @@ class Side:
             motor_speed_radps=omega_radps * self._vehicle.gear_ratio,
             motor_torque_nm=math.nan,
             loop_delay_s=delay_s,
+            sent_nm=sent_nm,
         )

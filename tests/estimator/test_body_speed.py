@@ -37,6 +37,15 @@ def test_a_bias_of_the_accelerometer_is_learnt() -> None:
     assert np.abs(errors(0.3)[500:]).max() < 0.02
 
 
+def test_the_grade_under_a_car_that_is_met_rolling_is_learnt_within_half_a_second() -> None:
+    body, speeds_mps = BodySpeed(PERIOD_S), []
+    for time_s, shown_mps in toothed(lambda time_s: 6.0 + 1.5 * time_s, 0.6):
+        body.update((shown_mps, shown_mps), GOOD, 0.5, 6.0)  # 1 m/s² less than there is
+        speeds_mps.append(body.value_mps - (6.0 + 1.5 * time_s))
+    assert np.abs(speeds_mps[-50:]).max() < 0.03
+    assert body.accel_mps2 == pytest.approx(1.5, abs=0.25)
+
+
 def test_without_acceleration_the_wheels_alone_are_followed() -> None:
     assert np.abs(errors(0.0, accel=False)).max() < 0.25
     assert np.abs(errors(0.0, accel=False)[500:]).mean() < 0.05

@@ -63,11 +63,11 @@ def test_noise_of_the_motor_speed_does_not_shake_the_wheel_speed() -> None:
     assert shaken[100:].std() < 0.06
 
 
-def test_after_a_reset_the_wheel_turns_like_its_motor() -> None:
+def test_after_a_reset_the_wheel_turns_like_its_motor_and_the_tyre_takes_its_torque() -> None:
     observer = DrivelineObserver(LINE, PERIOD_S)
     observer.update(0.0, 10.0)
     observer.reset()
-    assert observer.update(100.0, 33.0) == [33.0, 33.0, 0.0, 0.0]
+    assert observer.update(100.0, 33.0) == [33.0, 33.0, 100.0 / 6000.0, 100.0]
 
 
 def test_the_observer_forgets_a_wrong_start() -> None:

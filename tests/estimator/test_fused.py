@@ -54,6 +54,17 @@ def test_without_fresh_motor_state_the_wheels_own_sensor_serves(estimator: Fused
     assert right.slip_ratio == pytest.approx(0.0)
 
 
+def test_without_a_motor_a_wheel_is_as_fast_as_the_bodys_acceleration_has_made_it() -> None:
+    estimator = FusedEstimator(ControlSettings(), VEHICLE)
+    for tick in range(100):  # an edge every 20 ms, 2 m/s² in between
+        shown_radps = ROLLING_RADPS + 0.04 / RADIUS_M * (tick // 10)
+        wheels = (shown_radps,) * 4
+        m = measurement(motor_age_s=0.02, accel_x_mps2=2.0, wheel_speed_radps=wheels)
+        left, _ = estimator.update(m).wheels
+    gained_mps = (left.wheel_speed_radps - shown_radps) * RADIUS_M
+    assert gained_mps == pytest.approx(2.0 * (0.018 + 0.01), rel=0.1)
+
+
 def test_an_invalid_wheel_keeps_its_last_good_speed(estimator: FusedEstimator) -> None:
     blind = {"motor_age_s": math.inf, "wheel_speed_valid": (False, True, True, True)}
     estimator.update(measurement())

@@ -18,10 +18,11 @@ TICK = {
     "tcs_hil/canbus": "cadence ceiling e2e e2e_state inbox outbox service_node tcs_node"
     " vehicle_node watch",
     "tcs_hil/canbus/mapping": "node",
-    "tcs_hil/control": "bank_kmpc break_away carried_force compensated driveline_nmpc entry"
-    " fallback force_disturbance friction_rise guarded integrator native_bank native_driveline"
-    " pi plan screening sent speed_disturbance swing_guard swings",
-    "tcs_hil/estimator": "body_speed direct driveline_observer friction fused held loop_delay side",
+    "tcs_hil/control": "bank_kmpc body_disturbance break_away carried_force compensated"
+    " driveline_nmpc entry fallback force_disturbance friction_rise guarded integrator"
+    " native_bank native_driveline pi plan screening sent speed_disturbance swing_guard swings",
+    "tcs_hil/estimator": "body_speed direct driveline_observer edge_age friction fused held"
+    " loop_delay side",
     "tcs_hil/model": "tyre",
     "tcs_hil/plausibility": "driven rolling screen trace",
     "tcs_hil/runtime": "clock lockstep loop record recorder stopwatch transitions trigger",

@@ -43,14 +43,15 @@ def wheel_model() -> Model:
 
 
 def driveline_model() -> Model:
-    """The default law's; disturbed is the tyre's force."""
+    """The default law's; disturbed are the tyre's force and the body."""
     x, inputs = ca.SX.sym("x", driveline.NX), symbols_of_inputs()
     reference = ca.SX.sym("kappa_ref")
     line_fields, line = symbolic(Driveline)
     car_fields, car = symbolic(Vehicle)
     parameters = ca.vertcat(reference, line_fields, car_fields)
     belief: Any = SimpleNamespace(slip_reference=reference, default=SimpleNamespace(driveline=line))
-    rate = driveline.driveline_rate(x, inputs.torque_nm, inputs.disturbance, belief, car)
+    disturbance = inputs.disturbance_n, inputs.disturbance_mps2
+    rate = driveline.driveline_rate(x, inputs.torque_nm, disturbance, belief, car)
     return model("driveline", x, inputs, parameters, rate, car)
 
 
@@ -59,7 +60,8 @@ class Inputs(NamedTuple):
 
     step_s: Any
     torque_nm: Any
-    disturbance: Any
+    disturbance_n: Any
+    disturbance_mps2: Any
 
 
 def symbols_of_inputs() -> Inputs:

@@ -6,11 +6,18 @@ import math
 from collections.abc import Sequence
 
 from tcs_hil.control.bank_core import FloatArray, bank_core
+from tcs_hil.control.force_disturbance import ForceDisturbance
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.protocol import WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.control.speed_disturbance import SpeedDisturbance
 from tcs_hil.model.bank import KoopmanBank
+
+FORCE_SHARE = 0.17
+FORCE_S = 0.02
+FORCE_MPS = (3.0, 5.5)
+"""So much of the force that the tyre lacks is foreseen to go on, low-passed over this time: nothing
+up to the first speed, where it would feed the tyre's ring, the whole share from the second."""
 
 
 class BankOptimiser:
@@ -23,7 +30,11 @@ class BankOptimiser:
 
     def __init__(self, settings: ControlSettings, bank: KoopmanBank) -> None:
         self._core = bank_core(settings, bank)
-        self._disturbance = SpeedDisturbance(settings, bank.provenance.settings.vehicle)
+        vehicle = bank.provenance.settings.vehicle
+        self._disturbance = SpeedDisturbance(settings, vehicle)
+        self._force = ForceDisturbance(settings, vehicle, FORCE_S)
+        inertia_kgm2 = settings.default.driveline.wheel_inertia_kgm2
+        self._radps_per_n = -settings.period_s * vehicle.wheel_radius_m / inertia_kgm2
         self.reset()
 
     @property
@@ -36,17 +47,31 @@ class BankOptimiser:
         self._expected_radps = math.nan
         self._sent_nm = 0.0
         self._disturbance.reset()
+        self._force.reset()
         self._core.reset()
 
     def observe(self, wheel: WheelState, integral_s: float) -> None:
-        """The state is the one at the instant ``wheel`` describes; learns the disturbance."""
+        """The state is the one at the instant ``wheel`` describes; learns what disturbs it."""
         self._disturbance.learn(wheel.wheel_speed_radps - self._expected_radps)
+        self._force.update(wheel)
         # Without a motor on the bus, what was sent to it is the best guess.
         unknown = math.isnan(wheel.motor_torque_nm)
         torque_nm = self._sent_nm if unknown else wheel.motor_torque_nm
         self._expected_radps = self._core.observe(
-            wheel, torque_nm, integral_s, self._disturbance.value_radps
+            wheel, torque_nm, integral_s, self._disturbance_radps(wheel)
         )
+
+    def _disturbance_radps(self, wheel: WheelState) -> float:
+        """What the wheel gains in a period beyond its prediction.
+
+        Of a tyre that pushes less than believed the error over one period says
+        little, because the change of the motor's speed in z tells that force for
+        this period, and for no other.
+        """
+        slow_mps, fast_mps = FORCE_MPS
+        brisk = min(max((wheel.vehicle_speed_mps - slow_mps) / (fast_mps - slow_mps), 0.0), 1.0)
+        lacking_radps = self._radps_per_n * self._force.value_n
+        return self._disturbance.value_radps + FORCE_SHARE * brisk * lacking_radps
 
     def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
         """Carry the state through torques, the first for a part of a period, then one each."""

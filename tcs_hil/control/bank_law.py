@@ -32,7 +32,8 @@ def bank_mpc(settings: ControlSettings, bank: KoopmanBank) -> Controller:
     guard = SwingGuard(settings.slip_reference, vehicle, settings.period_s)
     optimiser = _optimiser(settings, bank)
     law = CompensatedController(optimiser, integral, guard, settings.period_s, break_away)
-    return GuardedController(law, PiController(settings), bank.validity, settings.period_s)
+    speed_mps = bank.validity.speed_mps
+    return GuardedController(law, PiController(settings), speed_mps, settings.period_s)
 
 
 def _optimiser(settings: ControlSettings, bank: KoopmanBank) -> DelayedOptimiser:

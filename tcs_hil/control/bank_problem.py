@@ -18,6 +18,9 @@ FloatArray = NDArray[np.float64]
 INTEGRAL, DISTURBANCE, NX = NZ, NZ + 1, NZ + 2
 """State x = [z, e_int, d]: e_int in seconds, d the wheel speed per period no model explains."""
 
+CALM_MPS = 0.8
+"""Below it the weights of slip and integral shrink by one more power of the speed."""
+
 UNIT_NM = 100.0
 """The solvers' unit of torque: their tolerances are absolute and meant for numbers near 1."""
 
@@ -103,6 +106,8 @@ def output_weights(tuning: BankKmpcSettings, speed_mps: float) -> tuple[float, f
 
     Both go with the square of the speed, which weighs slip as slip speed: a motor
     moves that as fast at any speed, so the loop is as quick at 3 m/s as at 30.
+    Near standstill they fall faster: the law would else feed the ring of a tyre
+    stiffer than the predictor's.
     """
-    share = (speed_mps / tuning.weights_speed_mps) ** 2
+    share = (speed_mps / tuning.weights_speed_mps) ** 2 * min(speed_mps / CALM_MPS, 1.0)
     return share * tuning.weight_slip, share * tuning.weight_integral

@@ -21,7 +21,7 @@ SENT_SHARE: Final = 0.7
 """What is left of the tyre's force, and at least of the torque at which the wheel broke away:
 the force is seen late, and a tyre near standstill swings on its carcass."""
 
-HOLD_S: Final = 0.25
+HOLD_S: Final = 0.3
 GROWTH_S: Final = 0.4
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final, Protocol
 
@@ -67,13 +68,18 @@ class CompensatedController:
         self._swing_guard = swing_guard
         self._period_s = period_s
         self._entry = entry
-        self._awake = False
+        self._begun = self._awake = False
         self._sent = SentTorques()
+        self._proposed_nm = 0.0  # what was sent, where the estimator does not tell
 
     def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
         """Propose the motor torque for the coming period."""
+        if self._begun:  # a law that begins does so from no torque, and catches a wheel that spins
+            known = -math.inf < wheel.sent_nm < math.inf
+            self._sent.push(wheel.sent_nm if known else self._proposed_nm)
+        self._begun = True
         proposal = settled(wheel, torque_ref_nm) or self._solve(wheel, torque_ref_nm)
-        self._sent.push(clamp(proposal.torque_nm, max(torque_ref_nm, 0.0)))
+        self._proposed_nm = clamp(proposal.torque_nm, max(torque_ref_nm, 0.0))
         return proposal
 
     def reset(self) -> None:
@@ -84,7 +90,7 @@ class CompensatedController:
         if self._break_away:
             self._break_away.reset()
         self._sent.reset()
-        self._awake = False
+        self._begun = self._awake = False
 
     def _solve(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
         self._optimiser.observe(wheel, self._weighed_integral_s(wheel.loop_delay_s))

@@ -33,4 +33,4 @@ class Driveline(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     shaft_damping_nmsprad: Annotated[float, msgspec.Meta(ge=0.0, le=1e6)] = 25.0
     motor_lag_s: Annotated[float, msgspec.Meta(ge=0.001, le=1.0)] = 0.005
     tyre_relaxation_m: Annotated[float, msgspec.Meta(ge=0.05, le=10.0)] = 0.12
-    tyre_sliding_m: Annotated[float, msgspec.Meta(ge=0.05, le=10.0)] = 0.08
+    tyre_sliding_m: Annotated[float, msgspec.Meta(ge=0.05, le=10.0)] = 0.07

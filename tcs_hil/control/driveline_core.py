@@ -16,11 +16,13 @@ from tcs_hil.signals import ControllerKind
 
 FloatArray = NDArray[np.float64]
 
+Disturbance = tuple[float, float]
+
 
 class DrivelineCore(Protocol):
     """The state of `driveline_transcription`, its prediction and the optimisation over it.
 
-    ``disturbance_n`` is added to the tyre's force.
+    A ``disturbance`` is (N, m/s²): added to the tyre's force, and to the body's acceleration.
     """
 
     x: FloatArray  # (7,), rolled forward and planned from
@@ -30,13 +32,17 @@ class DrivelineCore(Protocol):
         ...
 
     def roll_forward(
-        self, torques_nm: Sequence[float], first_periods: float, disturbance_n: float
+        self, torques_nm: Sequence[float], first_periods: float, disturbance: Disturbance
     ) -> None:
         """Carry x through torques, the first for a part of a period, then one each."""
         ...
 
     def plan(
-        self, last_torque_nm: float, torque_ref_nm: float, disturbance_n: float, urgency: float
+        self,
+        last_torque_nm: float,
+        torque_ref_nm: float,
+        disturbance: Disturbance,
+        urgency: float,
     ) -> Plan:
         """Best torques (N,) in Nm from x on, warm from the last plan; valid until the next.
 

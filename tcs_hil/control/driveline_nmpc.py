@@ -5,18 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from tcs_hil.control.body_disturbance import BodyDisturbance
 from tcs_hil.control.compensated import CompensatedController
-from tcs_hil.control.driveline_core import FloatArray, driveline_core
+from tcs_hil.control.driveline_core import Disturbance, FloatArray, driveline_core
 from tcs_hil.control.entry import Entry
 from tcs_hil.control.force_disturbance import ForceDisturbance
+from tcs_hil.control.guarded import GuardedController
 from tcs_hil.control.integrator import BoundedIntegral
+from tcs_hil.control.pi import PiController
 from tcs_hil.control.plan import Plan
-from tcs_hil.control.protocol import WheelState
+from tcs_hil.control.protocol import Controller, WheelState
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.control.swing_guard import SwingGuard
 from tcs_hil.model.vehicle import Vehicle
 
 SLOWEST_MPS = 0.2
+ANY_SPEED_MPS = (-math.inf, math.inf)
 
 STAB_RINGS_S = 0.1
 """The wheel swings so long after a stab at the pedal without the law's doing.  The default KMPC
@@ -28,14 +32,15 @@ CALM_MPS = (4.0, 6.0)
 
 
 class DrivelineOptimiser:
-    """Knows the state of the driveline and the surplus force; its core predicts and plans."""
+    """Knows the state of the driveline and what disturbs it; its core predicts and plans."""
 
     def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
         self._vehicle = vehicle
         self._driveline = settings.default.driveline
         self._tuning = settings.default.nmpc
         self._core = driveline_core(settings, vehicle)
-        self._disturbance = ForceDisturbance(settings, vehicle)
+        self._force = ForceDisturbance(settings, vehicle, self._tuning.observer_time_s)
+        self._body = BodyDisturbance(vehicle, settings.period_s)
 
     @property
     def state(self) -> FloatArray:
@@ -43,8 +48,9 @@ class DrivelineOptimiser:
         return self._core.x
 
     def observe(self, wheel: WheelState, integral_s: float) -> None:
-        """The state is the one at the instant ``wheel`` describes; learns the disturbance."""
-        force_n = self._disturbance.update(wheel)
+        """The state is the one at the instant ``wheel`` describes; learns what disturbs it."""
+        self._body.learn(wheel)
+        force_n = self._force.update(wheel)
         gear, shaft_nm = self._vehicle.gear_ratio, force_n * self._vehicle.wheel_radius_m
         steady_twist_rad = shaft_nm / self._driveline.shaft_stiffness_nmprad
         self._core.start_from(
@@ -61,12 +67,14 @@ class DrivelineOptimiser:
 
     def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
         """Carry the state through torques, the first for a part of a period, then one each."""
-        self._core.roll_forward(torques_nm, first_periods, self._disturbance.value_n)
+        self._core.roll_forward(torques_nm, first_periods, self._disturbance())
 
     def plan(self, last_torque_nm: float, torque_ref_nm: float) -> Plan:
         """Best torques (N,) in Nm within [0, torque_ref_nm]."""
-        disturbance_n, urgency = self._disturbance.value_n, self._urgency()
-        return self._core.plan(last_torque_nm, torque_ref_nm, disturbance_n, urgency)
+        return self._core.plan(last_torque_nm, torque_ref_nm, self._disturbance(), self._urgency())
+
+    def _disturbance(self) -> Disturbance:
+        return self._force.value_n, self._body.value_mps2
 
     def _urgency(self) -> float:
         """Factor on the slip's residuals: 1, less at low speed, where slip is touchy."""
@@ -78,9 +86,10 @@ class DrivelineOptimiser:
         return soft * (CALM_SHARE + (1.0 - CALM_SHARE) * brisk)
 
     def reset(self) -> None:
-        """Forget the last plan and the disturbance."""
+        """Forget the last plan and what disturbs."""
         self._core.reset()
-        self._disturbance.reset()
+        self._force.reset()
+        self._body.reset()
 
 
 def _or_else(value: float, steady: float) -> float:
@@ -88,10 +97,10 @@ def _or_else(value: float, steady: float) -> float:
     return value if -math.inf < value < math.inf else steady
 
 
-def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedController:
-    """One wheel's default NMPC; the first call may build CasADi's functions."""
+def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> Controller:
+    """One wheel's default NMPC, the PI where no motor shows; may build CasADi's functions."""
     tuning = settings.default.nmpc
-    return CompensatedController(
+    law = CompensatedController(
         DrivelineOptimiser(settings, vehicle),
         BoundedIntegral(
             settings.slip_reference, settings.period_s, settings.default.integral_limit_s
@@ -100,3 +109,4 @@ def driveline_mpc(settings: ControlSettings, vehicle: Vehicle) -> CompensatedCon
         settings.period_s,
         entry=Entry(tuning.entry_ratio * settings.slip_reference, tuning.entry_slip_mps),
     )
+    return GuardedController(law, PiController(settings), ANY_SPEED_MPS, settings.period_s)

@@ -3,7 +3,7 @@
 State x = [s, omega, e_int, T_motor, omega_motor, twist, F_x]; omega_motor is on
 the wheel side of the gear.  With i the gear ratio, K and D of the half-shaft:
 
-    s'           = R omega' - 2/m F_x          (two driven wheels move the car)
+    s'           = R omega' - 2/m F_x - a_d    (two driven wheels move the car)
     omega'       = (K twist + D (omega_motor - omega) - F_x R) / J_wheel
     e_int'       = kappa_ref - kappa
     T_motor'     = (u - T_motor) / lag
@@ -12,12 +12,14 @@ the wheel side of the gear.  With i the gear ratio, K and D of the half-shaft:
     F_x'         = (F(kappa) + dF - F_x) / (relaxation(kappa) / v_roll + 2.5 ms)
 
 v_roll is the rim's speed, and 1.5 m/s more by their squares (`CREEP_MPS`).
-F(kappa) is the paper's tyre, dF the disturbance the observer holds it to.
+F(kappa) is the paper's tyre, dF the disturbance the observer holds it to, a_d what the
+body gains besides.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -38,11 +40,11 @@ FASTEST_TYRE_S = 0.0025
 
 @lru_cache(maxsize=8)
 def plan_function(settings: ControlSettings, vehicle: Vehicle) -> Any:
-    """CasADi function (x_0 (7,), U (N,), p (4,)) -> cost, gradient, Hessian."""
+    """CasADi function (x_0 (7,), U (N,), p (5,)) -> cost, gradient, Hessian."""
     tuning = settings.default.nmpc
     x0, plan = ca.SX.sym("x0", NX), ca.SX.sym("U", len(tuning.blocks))
-    parameters = ca.SX.sym("p", 4)
-    torque_ref, last, force_disturbance, urgency = ca.vertsplit(parameters)
+    parameters = ca.SX.sym("p", 5)
+    torque_ref, last, *disturbance, urgency = ca.vertsplit(parameters)
     x, residuals = x0, []
     slip_gain, integral_gain, reduction_gain = (
         math.sqrt(weight / tuning.weight_change)
@@ -50,7 +52,7 @@ def plan_function(settings: ControlSettings, vehicle: Vehicle) -> Any:
     )
     for torque, periods in zip(ca.vertsplit(plan), tuning.blocks, strict=True):
         duration_s = periods * settings.period_s
-        x = advance(x, torque, duration_s, force_disturbance, settings, vehicle)
+        x = advance(x, torque, duration_s, disturbance, settings, vehicle)
         error = settings.slip_reference - slip_ratio(x[0], x[1], vehicle)
         held = math.sqrt(periods)
         tracking = held * urgency
@@ -62,10 +64,10 @@ def plan_function(settings: ControlSettings, vehicle: Vehicle) -> Any:
 
 @lru_cache(maxsize=8)
 def advance_function(settings: ControlSettings, vehicle: Vehicle) -> Any:
-    """CasADi function (x (7,), [u, duration in s, dF]) -> x after the duration."""
-    x, parameters = ca.SX.sym("x", NX), ca.SX.sym("p", 3)
-    torque, duration, force_disturbance = ca.vertsplit(parameters)
-    after = advance(x, torque, duration, force_disturbance, settings, vehicle)
+    """CasADi function (x (7,), [u, duration in s, dF, a_d]) -> x after the duration."""
+    x, parameters = ca.SX.sym("x", NX), ca.SX.sym("p", 4)
+    torque, duration, *disturbance = ca.vertsplit(parameters)
+    after = advance(x, torque, duration, disturbance, settings, vehicle)
     return ca.Function("advance", [x, parameters], [after], {"cse": True})
 
 
@@ -73,22 +75,23 @@ def advance(
     x: Any,
     torque_nm: Any,
     duration_s: Any,
-    disturbance_n: Any,
+    disturbance: Sequence[Any],
     settings: ControlSettings,
     car: Vehicle,
 ) -> Any:
     """State (7,) after at most 4 ms of a commanded motor torque."""
 
     def rate(state: Any) -> Any:
-        return driveline_rate(state, torque_nm, disturbance_n, settings, car)
+        return driveline_rate(state, torque_nm, disturbance, settings, car)
 
     return rk4(rate, x, duration_s, substeps=1)
 
 
 def driveline_rate(
-    x: Any, torque_nm: Any, disturbance_n: Any, settings: ControlSettings, car: Vehicle
+    x: Any, torque_nm: Any, disturbance: Sequence[Any], settings: ControlSettings, car: Vehicle
 ) -> Any:
-    """Time derivative of the state (7,)."""
+    """Time derivative of the state (7,) under a disturbance (dF in N, a_d in m/s²)."""
+    disturbance_n, disturbance_mps2 = disturbance
     line, radius_m = settings.default.driveline, car.wheel_radius_m
     s, omega, _, motor_nm, motor_omega, twist, force_n = ca.vertsplit(x)
     kappa = slip_ratio(s, omega, car)
@@ -100,7 +103,7 @@ def driveline_rate(
     relaxation_m = sliding_m + (line.tyre_relaxation_m - sliding_m) * tyre.secant_ratio(kappa)
     settling = 1.0 / (relaxation_m / rolling_mps + FASTEST_TYRE_S)
     return ca.vertcat(
-        radius_m * omega_rate - 2.0 / car.mass_kg * force_n,
+        radius_m * omega_rate - 2.0 / car.mass_kg * force_n - disturbance_mps2,
         omega_rate,
         settings.slip_reference - kappa,
         (torque_nm - motor_nm) / line.motor_lag_s,

@@ -19,7 +19,7 @@ class ForceDisturbance:
     static wheel load, so that no sensor fault can invent more than a road.
     """
 
-    def __init__(self, settings: ControlSettings, vehicle: Vehicle) -> None:
+    def __init__(self, settings: ControlSettings, vehicle: Vehicle, memory_s: float) -> None:
         self._tyre = Tyre(vehicle, math)
         self._radius_m = vehicle.wheel_radius_m
         self._limit_n = vehicle.wheel_load_n
@@ -27,7 +27,7 @@ class ForceDisturbance:
         self._sliding_m = line.tyre_sliding_m
         self._bent_m = line.tyre_relaxation_m - line.tyre_sliding_m
         self._period_s = settings.period_s
-        self._gain = 1.0 - math.exp(-settings.period_s / settings.default.nmpc.observer_time_s)
+        self._gain = 1.0 - math.exp(-settings.period_s / memory_s)
         self._modelled_n = 0.0
         self.value_n = 0.0
 

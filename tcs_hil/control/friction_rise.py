@@ -7,12 +7,12 @@ import math
 from tcs_hil.control.protocol import WheelState
 
 HELD_SHARE = 0.5
-HELD_S = 0.5
+HELD_S = 0.3
 """A wheel held above this share of the slip reference for so long shows what the road carries."""
 RISE_SHARE = 1.3
 KICK_S = 0.25
 """So much more force, within this time of being held, comes from another road."""
-SLOWEST_MPS = 4.0
+SLOWEST_MPS = 3.0
 """Below it slip answers torque so fast that the loop keeps up whatever the road began."""
 
 

@@ -1,41 +1,46 @@
-"""A law within its validity and a fallback outside, handed over without a bump."""
+"""A law within its validity and a PI outside, handed over without a bump."""
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
+from tcs_hil.control.pi import PiController
 from tcs_hil.control.protocol import Controller, Proposal, WheelState
-from tcs_hil.model.provenance import Validity
+from tcs_hil.control.screening import decided
+from tcs_hil.model.ranges import Range
 
 HAND_OVER_S: Final = 0.05
 
 
 class GuardedController:
-    """The law while the vehicle's speed is one its model knows, else the fallback.
+    """The law while its model knows the vehicle's speed and sees the motor, else the PI.
 
-    Both decide in every tick; what is proposed moves from one to the other in
-    50 ms.  A speed that strays over the border and back therefore costs nothing.
-    Slip and torque need no guard: beyond the slip of the data a linear predictor
-    overrates it, and the answer is the lower bound of the torque, which is right.
+    The PI takes on every decision of the law; once it has a say, both decide in
+    every tick, and what is proposed moves from one to the other in 50 ms.  A speed
+    that strays over the border and back therefore costs nothing.  Slip and torque
+    need no guard: beyond the slip of the data a linear predictor overrates it, and
+    the answer is the lower bound of the torque, which is right.
     """
 
     def __init__(
-        self, law: Controller, fallback: Controller, validity: Validity, period_s: float
+        self, law: Controller, fallback: PiController, speed_mps: Range, period_s: float
     ) -> None:
         self._law = law
         self._fallback = fallback
-        self._low_mps, self._high_mps = validity.speed_mps
+        self._low_mps, self._high_mps = speed_mps
         self._pace = period_s / HAND_OVER_S
         self._trust = 1.0
 
     def step(self, wheel: WheelState, torque_ref_nm: float) -> Proposal:
         """Propose the motor torque for the coming period."""
         law = self._law.step(wheel, torque_ref_nm)
-        fallback = self._fallback.step(wheel, torque_ref_nm)
-        valid = self._low_mps <= wheel.vehicle_speed_mps <= self._high_mps
-        self._trust += self._pace if valid else -self._pace
-        self._trust = min(max(self._trust, 0.0), 1.0)
-        return _between(fallback, law, self._trust)
+        self._trust = min(self._trust + self._pace, 1.0) if self._is_valid(wheel) else 0.0
+        if self._trust == 1.0:
+            if decided(law):
+                self._fallback.follow(wheel, law.torque_nm, torque_ref_nm)
+            return law
+        return _between(self._fallback.step(wheel, torque_ref_nm), law, self._trust)
 
     def reset(self) -> None:
         """Forget everything, as at start-up."""
@@ -43,11 +48,13 @@ class GuardedController:
         self._fallback.reset()
         self._trust = 1.0
 
+    def _is_valid(self, wheel: WheelState) -> bool:
+        sees_motor = -math.inf < wheel.motor_torque_nm < math.inf
+        return sees_motor and self._low_mps <= wheel.vehicle_speed_mps <= self._high_mps
+
 
 def _between(fallback: Proposal, law: Proposal, trust: float) -> Proposal:
     """Mixed torque; status and iterations of the one that has more say."""
-    if trust == 1.0:
-        return law
     if trust == 0.0:
         return fallback
     torque_nm = fallback.torque_nm + trust * (law.torque_nm - fallback.torque_nm)

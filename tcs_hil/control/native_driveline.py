@@ -8,6 +8,7 @@ from typing import Any
 
 from msgspec.structs import astuple
 
+from tcs_hil.control.driveline_core import Disturbance
 from tcs_hil.control.native_law import plan_of
 from tcs_hil.control.plan import Plan
 from tcs_hil.control.settings import ControlSettings
@@ -32,19 +33,23 @@ class NativeDriveline:
         self._struct.x = x  # a quarter of the time that numpy takes
 
     def roll_forward(
-        self, torques_nm: Sequence[float], first_periods: float, disturbance_n: float
+        self, torques_nm: Sequence[float], first_periods: float, disturbance: Disturbance
     ) -> None:
         """Carry x through torques, the first for a part of a period, then one each."""
         self._lib.driveline_roll_forward(
-            self._struct, torques_nm, len(torques_nm), first_periods, disturbance_n
+            self._struct, torques_nm, len(torques_nm), first_periods, *disturbance
         )
 
     def plan(
-        self, last_torque_nm: float, torque_ref_nm: float, disturbance_n: float, urgency: float
+        self,
+        last_torque_nm: float,
+        torque_ref_nm: float,
+        disturbance: Disturbance,
+        urgency: float,
     ) -> Plan:
         """Best torques (N,) in Nm from x on; valid until the next call."""
         outcome = self._lib.driveline_plan(
-            self._struct, last_torque_nm, torque_ref_nm, disturbance_n, urgency
+            self._struct, last_torque_nm, torque_ref_nm, *disturbance, urgency
         )
         return plan_of(self._plan, outcome)
 

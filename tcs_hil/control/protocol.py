@@ -15,8 +15,10 @@ class WheelState(msgspec.Struct, frozen=True):
     ``slip_speed_mps`` is s = omega R - v, ``slip_ratio`` the modified kappa of
     Eq. (slip_mod).  Motor quantities are on the motor side of the gear.
 
+    ``sent_nm`` is the torque that was granted to the motor at the end of the last tick.
     NaN is what nobody knows: ``motor_torque_nm`` without a motor on the bus;
     ``shaft_twist_rad`` and ``tyre_force_n`` (driving positive) without an observer.
+    ``vehicle_accel_mps2`` is the body's over ground; without it, and without an observer, NaN.
     ``loop_delay_s`` is from the instant all this describes to the first effect
     of the command that answers it.
     """
@@ -29,7 +31,9 @@ class WheelState(msgspec.Struct, frozen=True):
     motor_torque_nm: float
     shaft_twist_rad: float = math.nan
     tyre_force_n: float = math.nan
+    vehicle_accel_mps2: float = math.nan
     loop_delay_s: float = 0.0
+    sent_nm: float = math.nan
 
     @classmethod
     def at_rest(cls) -> WheelState:

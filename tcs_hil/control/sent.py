@@ -11,7 +11,7 @@ _REMEMBERED: Final = int(MAX_DELAY_PERIODS) + 1
 
 
 class SentTorques:
-    """What one wheel's law has proposed lately, newest last.
+    """What was sent to one wheel's motor lately, newest last.
 
     A state that is ``d`` periods older than the first effect of the next
     command will still see ``d`` periods of earlier ones.
@@ -26,7 +26,7 @@ class SentTorques:
         return self._sent[-1]
 
     def push(self, torque_nm: float) -> None:
-        """Remember what this tick has proposed."""
+        """Remember what a tick has sent."""
         self._sent.append(torque_nm)
         del self._sent[0]
 

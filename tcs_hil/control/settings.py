@@ -70,12 +70,12 @@ class DrivelineNmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     )
     weight_slip: Weight = 1e3
     weight_integral: Weight = 0.0
-    weight_reduction: PositiveWeight = 8e-6
-    weight_change: PositiveWeight = 4e-2  # on (u_k - u_{k-1})²
+    weight_reduction: PositiveWeight = 1.2e-5
+    weight_change: PositiveWeight = 3.7e-2  # on (u_k - u_{k-1})²
     max_iterations: Annotated[int, msgspec.Meta(ge=1, le=100)] = 2
     leftover_nm: ClassVar[float] = 1e-3
     """What a tick may leave to the next one: a fiftieth of what the bus can say of a torque."""
-    observer_time_s: TimeConstant = 0.02  # of the force disturbance
+    observer_time_s: TimeConstant = 0.016  # of the force disturbance
     entry_ratio: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.3
     """Share of the slip reference at which the law takes over from the driver."""
     entry_slip_mps: Weight = 0.06
@@ -90,11 +90,11 @@ class BankKmpcSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     horizon: Horizon = 16
     weight_slip: Weight = 1e3
     weight_integral: Weight = 2e6
-    weight_reduction: PositiveWeight = 1e-5
+    weight_reduction: PositiveWeight = 5e-5
     weight_change: PositiveWeight = 5e-2  # on (u_k - u_{k-1})²
-    observer_time_s: TimeConstant = 0.03  # of the speed disturbance
+    observer_time_s: TimeConstant = 0.045  # of the speed disturbance
     online_update: bool = False  # of the predictor, by the grip observed
-    weights_speed_mps: Speed = 5.2
+    weights_speed_mps: Speed = 5.3
     """Where the weights of slip and integral are as given; they go with the speed squared."""
 
 

@@ -23,11 +23,10 @@ TURNS: Final = 3
 STAB_NMPS: Final = 1500.0
 """A driver who asks for more this fast, or for less, makes the wheel swing himself."""
 
-MEAN_SHARE: Final = 0.95
-CARRIED_SHARE: Final = 0.9
+MEAN_SHARE: Final = 0.97
 LEAST_SHARE: Final = 0.6
-"""What is held: of the torque's mean, or of what the tyre carries if that is more; and what is left
-of it at least, whatever a sliding tyre carries."""
+"""What is held: of the torque's mean, or all that the tyre carries if that is more; and what is
+left of it at least, whatever a sliding tyre carries."""
 SLIDING_SHARE: Final = 2.0
 LOST_SHARE: Final = 4.0
 """Beyond so many slip references a held wheel slides, and is left to the law."""
@@ -38,7 +37,7 @@ LONGEST_HOLD_S: Final = 2.0
 LONGER: Final = 1.3
 CALM_S: Final = 2.0
 """A hold is so much longer than the last one, unless so much time has passed since."""
-GROWTH_S: Final = 0.4
+GROWTH_S: Final = 0.7
 
 
 class SwingGuard:
@@ -128,7 +127,7 @@ class SwingGuard:
         self._hold_s = min(LONGER * self._hold_s, LONGEST_HOLD_S) if again else HOLD_S
         self._left_s, self._calm_s = self._hold_s, 0.0
         mean_nm = min(MEAN_SHARE * self._mean.value, self._ceiling_nm)
-        self._level_nm = max(mean_nm, CARRIED_SHARE * self._carried.torque_nm)
+        self._level_nm = max(mean_nm, self._carried.torque_nm)
         self._least_nm = LEAST_SHARE * self._level_nm
         self._ceiling_nm = max(self._level_nm, min(sent_nm, self._ceiling_nm))
 
@@ -136,8 +135,7 @@ class SwingGuard:
         """Settle gently: near standstill a step of torque makes the tyre swing by itself."""
         self._left_s -= self._period_s
         if wheel.slip_ratio > SLIDING_SHARE * self._slip_reference:
-            carried_nm = CARRIED_SHARE * self._carried.torque_nm
-            self._level_nm = max(carried_nm, self._least_nm)
+            self._level_nm = max(self._carried.torque_nm, self._least_nm)
         if wheel.slip_ratio > LOST_SHARE * self._slip_reference:
             self._left_s = 0.0
         self._ceiling_nm += self._settling * (self._level_nm - self._ceiling_nm)

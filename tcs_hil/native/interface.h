@@ -72,9 +72,10 @@ typedef struct {
 void driveline_setup(driveline *law, int block_count, int max_iterations, double leftover_nm);
 void driveline_reset(driveline *law);
 void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
-                            double first_periods, double disturbance_n);
+                            double first_periods, double disturbance_n,
+                            double disturbance_mps2);
 int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm,
-                   double disturbance_n, double urgency);
+                   double disturbance_n, double disturbance_mps2, double urgency);
 
 typedef struct {
     double centre_mps;

@@ -9,16 +9,18 @@ import pytest
 from msgspec.structs import replace
 from scipy.optimize import lsq_linear
 
-from tcs_hil.control.bank_kmpc import BankOptimiser
+from tcs_hil.control.bank_kmpc import FORCE_MPS, BankOptimiser
 from tcs_hil.control.bank_law import bank_mpc
 from tcs_hil.control.bank_osqp import BandProblem
-from tcs_hil.control.bank_problem import INTEGRAL, bands_of, output_weights
+from tcs_hil.control.bank_problem import CALM_MPS, INTEGRAL, bands_of, output_weights
 from tcs_hil.control.protocol import Controller, SolveStatus
 from tcs_hil.control.settings import ControlSettings
 from tcs_hil.errors import ConfigError
 from tcs_hil.model.bank import KoopmanBank, default_bank_path
 from tcs_hil.model.fleet import FleetSettings
 from tcs_hil.model.observables import Observable
+from tcs_hil.model.tyre import tyre_force_n
+from tcs_hil.model.vehicle import Vehicle
 from tests.control.believed_car import chatter_nm, drive, nominal
 from tests.control.recorder import wheel_at
 
@@ -37,7 +39,7 @@ def reference_plan(band: int, x: np.ndarray, last_nm: float, torque_ref_nm: floa
     tuning = SETTINGS.default.kmpc
     system = bands_of(BANK, SETTINGS)[band].system
     centre_mps = BANK.centre_mps[band]
-    share = centre_mps / tuning.weights_speed_mps
+    share = centre_mps / tuning.weights_speed_mps * min(centre_mps / CALM_MPS, 1.0) ** 0.5
 
     def residuals(torques: np.ndarray) -> np.ndarray:
         state, previous, terms = x, last_nm, []
@@ -81,13 +83,26 @@ def test_the_state_is_carried_through_every_torque_under_way() -> None:
     np.testing.assert_allclose(optimiser.state, x, rtol=1e-12)
 
 
-def test_without_a_motor_on_the_bus_it_goes_on_with_what_it_sent() -> None:
-    law = bank_mpc(SETTINGS, BANK)
+def test_without_a_motor_on_the_bus_the_pi_goes_on_from_what_was_sent(law: Controller) -> None:
     wheel = wheel_at(6.0, 0.1, 100.0)
     known = [law.step(wheel, 200.0).torque_nm for _ in range(20)][-1]
     proposal = law.step(replace(wheel, motor_torque_nm=math.nan), 200.0)
     assert proposal.status is SolveStatus.OK
-    assert proposal.torque_nm == pytest.approx(known, abs=20.0)  # no jump, no wide-open throttle
+    assert proposal.torque_nm == pytest.approx(known, abs=1.0)  # no jump, no wide-open throttle
+
+
+def test_a_tyre_that_pushes_less_is_foreseen_to_go_on_so_above_walking_pace_alone() -> None:
+    def foreseen_radps(speed_mps: float, lacking_n: float) -> float:
+        optimiser, wheel = BankOptimiser(SETTINGS, BANK), wheel_at(speed_mps, 0.05, 50.0)
+        believed_n = float(tyre_force_n(wheel.slip_ratio, Vehicle()))
+        for _ in range(200):
+            optimiser.observe(replace(wheel, tyre_force_n=believed_n - lacking_n), 0.0)
+        optimiser.roll_forward([50.0] * 10, 1.0)
+        return float(optimiser.state[Observable.WHEEL_SPEED])
+
+    slow_mps, fast_mps = FORCE_MPS
+    assert foreseen_radps(slow_mps, 500.0) == foreseen_radps(slow_mps, 0.0)
+    assert foreseen_radps(fast_mps, 500.0) > foreseen_radps(fast_mps, 0.0) + 0.1
 
 
 @pytest.mark.parametrize("border", [1.0978, 3.4435, 7.0])
@@ -99,11 +114,12 @@ def test_the_command_is_continuous_in_speed(border: float) -> None:
     assert abs(first(border * 1.0001) - first(border * 0.9999)) < 0.05
 
 
-def test_an_error_of_slip_speed_weighs_the_same_at_any_speed() -> None:
+def test_an_error_of_slip_speed_weighs_the_same_at_any_speed_but_less_near_standstill() -> None:
     tuning = SETTINGS.default.kmpc
-    slip_mps = 0.1
-    costs = [output_weights(tuning, v)[0] * (slip_mps / v) ** 2 for v in (0.5, 5.0, 50.0)]
+    slip_mps, speeds_mps = 0.1, (CALM_MPS, 5.0, 50.0, 0.5 * CALM_MPS)
+    *costs, slow = [output_weights(tuning, v)[0] * (slip_mps / v) ** 2 for v in speeds_mps]
     assert costs == pytest.approx([costs[1]] * 3)
+    assert slow == pytest.approx(0.5 * costs[0])
 
 
 @pytest.mark.parametrize(("speed_mps", "peak"), [(1.0, 0.13), (6.0, 0.13), (25.0, 0.18)])

@@ -76,6 +76,20 @@ def test_a_failed_solve_leaves_the_request_and_is_remembered_as_sent() -> None:
     assert optimiser.asked[1][1] == 200.0
 
 
+def test_what_was_granted_is_carried_on_whoever_decided_it() -> None:
+    optimiser = Scripted(80.0, 70.0)
+    controller = control(optimiser)
+    controller.step(SPINNING, 200.0)
+    controller.step(replace(SPINNING, sent_nm=95.0), 200.0)
+    assert optimiser.asked[1][1] == 95.0
+
+
+def test_a_law_that_begins_does_so_from_no_torque() -> None:
+    optimiser = Scripted(80.0)
+    control(optimiser).step(replace(SPINNING, sent_nm=250.0), 250.0)
+    assert optimiser.asked[0][1] == 0.0
+
+
 def test_what_needs_no_solve_is_remembered_as_sent_too() -> None:
     optimiser = Scripted(80.0, 80.0)
     controller = control(optimiser)

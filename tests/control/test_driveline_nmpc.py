@@ -24,7 +24,9 @@ from tests.control.recorder import wheel_at
 SETTINGS, VEHICLE = ControlSettings(), Vehicle()
 LINE, TUNING = SETTINGS.default.driveline, SETTINGS.default.nmpc
 STATE = np.array([0.4, 8.0, 0.001, 90.0, 8.2, 0.05, 900.0])
-REQUEST_NM, LAST_NM, DISTURBANCE_N, URGENCY = 200.0, 95.0, -150.0, 0.7
+REQUEST_NM, LAST_NM, URGENCY = 200.0, 95.0, 0.7
+DISTURBANCE = DISTURBANCE_N, DISTURBANCE_MPS2 = -150.0, -0.8
+UNDISTURBED = 0.0, 0.0
 
 
 def rate(_: float, x: np.ndarray, torque_nm: float) -> list[float]:
@@ -35,9 +37,9 @@ def rate(_: float, x: np.ndarray, torque_nm: float) -> list[float]:
     shaft_nm = 6000.0 * twist + 25.0 * (motor_omega - omega)
     omega_rate = (shaft_nm - 0.318 * force_n) / 0.95
     static_n = float(tyre_force_n(kappa, VEHICLE)) + DISTURBANCE_N
-    relaxation_m = 0.08 + 0.04 / math.hypot(1.0, 1.3 * VEHICLE.tyre_b * kappa)
+    relaxation_m = 0.07 + 0.05 / math.hypot(1.0, 1.3 * VEHICLE.tyre_b * kappa)
     return [
-        0.318 * omega_rate - 2.0 / 1400.0 * force_n,
+        0.318 * omega_rate - 2.0 / 1400.0 * force_n - DISTURBANCE_MPS2,
         omega_rate,
         0.1 - kappa,
         (torque_nm - motor_nm) / 0.005,
@@ -49,7 +51,7 @@ def rate(_: float, x: np.ndarray, torque_nm: float) -> list[float]:
 
 def test_the_model_is_the_driveline_integrated() -> None:
     flow = Flow(advance_function(SETTINGS, VEHICLE))
-    after = flow.after(STATE, 120.0, 0.002, DISTURBANCE_N)
+    after = flow.after(STATE, 120.0, 0.002, DISTURBANCE)
     exact = solve_ivp(rate, (0.0, 0.002), STATE, args=(120.0,), rtol=1e-10, atol=1e-12).y[:, -1]
     np.testing.assert_allclose(after, exact, rtol=2e-4, atol=1e-6)
 
@@ -61,8 +63,9 @@ def test_the_state_is_carried_through_every_torque_under_way() -> None:
     )
     optimiser.state[:] = STATE
     optimiser.roll_forward([40.0, 60.0], 0.25)
-    half = flow.after(STATE, 40.0, 0.25 * 0.002, 0.0).copy()
-    np.testing.assert_allclose(optimiser.state, flow.after(half, 60.0, 0.002, 0.0), rtol=1e-12)
+    half = flow.after(STATE, 40.0, 0.25 * 0.002, UNDISTURBED).copy()
+    whole = flow.after(half, 60.0, 0.002, UNDISTURBED)
+    np.testing.assert_allclose(optimiser.state, whole, rtol=1e-12)
 
 
 @pytest.mark.parametrize("speed_mps", [0.3, 60.0])
@@ -71,7 +74,7 @@ def test_one_runge_kutta_step_of_the_longest_block_is_stable(speed_mps: float) -
     omega = speed_mps / VEHICLE.wheel_radius_m
     state = np.array([0.01, omega, 0.0, 0.0, omega, 0.0, 0.0])
     for _ in range(500):
-        state = flow.after(state, 20.0, 0.004, 0.0).copy()
+        state = flow.after(state, 20.0, 0.004, UNDISTURBED).copy()
     assert np.abs(state).max() < 500.0
     assert state[6] == pytest.approx(3.0 * 20.0 / 0.318, rel=0.1)
 
@@ -79,7 +82,7 @@ def test_one_runge_kutta_step_of_the_longest_block_is_stable(speed_mps: float) -
 @pytest.fixture
 def problem() -> Linearisation:
     linearisation = Linearisation(plan_function(SETTINGS, VEHICLE))
-    linearisation.start_from(STATE, REQUEST_NM, LAST_NM, DISTURBANCE_N, URGENCY)
+    linearisation.start_from(STATE, REQUEST_NM, LAST_NM, *DISTURBANCE, URGENCY)
     return linearisation
 
 
@@ -87,7 +90,7 @@ def test_the_cost_is_the_weighted_sum_over_the_plan(problem: Linearisation) -> N
     flow, x, last, cost = Flow(advance_function(SETTINGS, VEHICLE)), STATE, LAST_NM, 0.0
     plan = np.linspace(80.0, 120.0, len(TUNING.blocks))
     for torque_nm, periods in zip(plan, TUNING.blocks, strict=True):
-        x = flow.after(x, torque_nm, periods * 0.002, DISTURBANCE_N).copy()
+        x = flow.after(x, torque_nm, periods * 0.002, DISTURBANCE).copy()
         rim = 0.318 * x[1]
         kappa = x[0] * rim / (rim * rim + 0.1)
         tracking = TUNING.weight_slip * (0.1 - kappa) ** 2 + TUNING.weight_integral * x[2] ** 2
@@ -179,7 +182,7 @@ def test_without_a_motor_on_the_bus_the_state_is_a_steady_one() -> None:
 
 
 def test_a_force_beyond_the_model_is_learnt_and_bounded() -> None:
-    disturbance = ForceDisturbance(SETTINGS, VEHICLE)
+    disturbance = ForceDisturbance(SETTINGS, VEHICLE, 0.02)
     wheel = wheel_at(5.0, 0.1)
     static_n = float(tyre_force_n(wheel.slip_ratio, VEHICLE))
     for _ in range(200):
@@ -192,7 +195,7 @@ def test_a_force_beyond_the_model_is_learnt_and_bounded() -> None:
 
 
 def test_without_an_observed_force_nothing_is_learnt() -> None:
-    disturbance = ForceDisturbance(SETTINGS, VEHICLE)
+    disturbance = ForceDisturbance(SETTINGS, VEHICLE, 0.02)
     for _ in range(200):
         force_n = disturbance.update(wheel_at(5.0, 0.1))
     assert disturbance.value_n == 0.0

@@ -1,17 +1,23 @@
-"""Outside its validity a law hands over to its fallback, and takes over again, smoothly."""
+"""Outside its validity a law hands over to the PI, and takes over again, without a bump."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+import pytest
+from msgspec.structs import replace
+
 from tcs_hil.control.guarded import HAND_OVER_S, GuardedController
+from tcs_hil.control.pi import PiController
 from tcs_hil.control.protocol import Proposal, SolveStatus, WheelState
-from tcs_hil.model.provenance import Validity
+from tcs_hil.control.settings import ControlSettings
 from tests.control.recorder import wheel_at
 
 PERIOD_S = 0.002
-VALID = Validity(speed_mps=(1.0, 10.0), slip_ratio=(0.0, 0.3), torque_nm=(0.0, 250.0))
-INSIDE, OUTSIDE = wheel_at(5.0, 0.1), wheel_at(11.0, 0.1)
+VALID_MPS = (1.0, 10.0)
+INSIDE, OUTSIDE = wheel_at(5.0, 0.12, 100.0), wheel_at(11.0, 0.12, 100.0)
+BLIND = replace(INSIDE, motor_torque_nm=math.nan)
 
 
 @dataclass
@@ -29,8 +35,9 @@ class Fixed:
         self.resets += 1
 
 
-def guarded(law: Fixed | None = None, fallback: Fixed | None = None) -> GuardedController:
-    return GuardedController(law or Fixed(100.0), fallback or Fixed(60.0), VALID, PERIOD_S)
+def guarded(law: Fixed | None = None) -> GuardedController:
+    pi = PiController(ControlSettings())
+    return GuardedController(law or Fixed(100.0), pi, VALID_MPS, PERIOD_S)
 
 
 def torques(controller: GuardedController, wheel: WheelState, ticks: int) -> list[float]:
@@ -41,39 +48,53 @@ def test_inside_its_validity_the_law_decides() -> None:
     assert torques(guarded(), INSIDE, 3) == [100.0] * 3
 
 
-def test_outside_the_fallback_takes_over_without_a_bump() -> None:
-    ticks = round(HAND_OVER_S / PERIOD_S)
-    handed = torques(guarded(), OUTSIDE, ticks + 2)
-    steps = [before - after for before, after in zip([100.0, *handed], handed, strict=False)]
-    assert max(steps) <= 40.0 / ticks + 1e-9
-    assert handed[-1] == 60.0
-
-
-def test_back_inside_the_law_takes_over_again_as_smoothly() -> None:
+@pytest.mark.parametrize("wheel", [OUTSIDE, BLIND], ids=["too fast", "no motor on the bus"])
+def test_outside_the_pi_goes_on_from_the_laws_last_torque(wheel: WheelState) -> None:
     controller = guarded()
-    torques(controller, OUTSIDE, 40)
-    back = torques(controller, INSIDE, 40)
-    assert back[0] < 62.0
+    torques(controller, INSIDE, 1)
+    handed = torques(controller, wheel, 100)
+    assert handed[0] == pytest.approx(100.0, abs=3.0)
+    assert handed[-1] < 95.0  # slip is above its reference, and the law would stay at 100
+
+
+def test_back_inside_the_law_takes_over_within_the_time_to_hand_over() -> None:
+    controller, ticks = guarded(), round(HAND_OVER_S / PERIOD_S)
+    torques(controller, INSIDE, 1)
+    last_nm = torques(controller, OUTSIDE, 100)[-1]
+    back = torques(controller, INSIDE, ticks + 1)
+    steps = [after - before for before, after in zip([last_nm, *back], back, strict=False)]
+    assert max(steps) < 3.0 * (100.0 - last_nm) / ticks
     assert back[-1] == 100.0
 
 
 def test_straying_over_the_border_for_one_tick_hardly_matters() -> None:
     controller = guarded()
-    assert torques(controller, OUTSIDE, 1)[0] > 98.0
-    assert torques(controller, INSIDE, 1)[0] == 100.0
+    torques(controller, INSIDE, 1)
+    assert torques(controller, OUTSIDE, 1)[0] > 97.0
+    assert torques(controller, INSIDE, 1)[0] > 97.0
 
 
 def test_a_failure_counts_while_the_failing_law_has_more_say() -> None:
-    controller = guarded(law=Fixed(100.0, SolveStatus.FAILED))
-    statuses = [controller.step(OUTSIDE, 200.0).status for _ in range(30)]
-    assert statuses[0] is SolveStatus.FAILED
-    assert statuses[-1] is SolveStatus.OK
+    controller = guarded(Fixed(100.0, SolveStatus.FAILED))
+    torques(controller, OUTSIDE, 1)
+    statuses = [controller.step(INSIDE, 200.0).status for _ in range(30)]
+    assert statuses[0] is SolveStatus.OK
+    assert statuses[-1] is SolveStatus.FAILED
 
 
-def test_a_reset_reaches_both_and_trusts_the_law_again() -> None:
-    law, fallback = Fixed(100.0), Fixed(60.0)
-    controller = guarded(law, fallback)
+def test_the_pi_takes_on_nothing_from_a_law_that_has_not_decided() -> None:
+    law = Fixed(100.0)
+    controller = guarded(law)
+    torques(controller, INSIDE, 1)
+    law.torque_nm, law.status = 200.0, SolveStatus.FAILED
+    torques(controller, INSIDE, 1)
+    assert torques(controller, OUTSIDE, 1)[0] < 101.0
+
+
+def test_a_reset_reaches_the_law_and_trusts_it_again() -> None:
+    law = Fixed(100.0)
+    controller = guarded(law)
     torques(controller, OUTSIDE, 40)
     controller.reset()
-    assert (law.resets, fallback.resets) == (1, 1)
+    assert law.resets == 1
     assert torques(controller, INSIDE, 1) == [100.0]

@@ -15,15 +15,18 @@ void driveline_reset(driveline *law) { sqp_reset(&law->solver); }
 
 static const dynamics MODEL = {DRIVELINE_NX, driveline_flow, driveline_step, driveline_chain};
 
-static void depart(const driveline *law, double disturbance_n, int derives, shot *state) {
+static void depart(const driveline *law, double disturbance_n, double disturbance_mps2,
+                   int derives, shot *state) {
     shot_start(state, &MODEL, law->parameters, law->constants, law->x, derives);
-    state->inputs[DISTURBANCE] = disturbance_n;
+    state->inputs[DISTURBANCE_N] = disturbance_n;
+    state->inputs[DISTURBANCE_MPS2] = disturbance_mps2;
 }
 
 void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
-                            double first_periods, double disturbance_n) {
+                            double first_periods, double disturbance_n,
+                            double disturbance_mps2) {
     shot state;
-    depart(law, disturbance_n, 0, &state);
+    depart(law, disturbance_n, disturbance_mps2, 0, &state);
     for (int k = 0; k < count; k++) {
         shot_torque(&state, torques_nm[k]);
         shot_step(&state, law->period_s * (k == 0 ? first_periods : 1.0));
@@ -64,7 +67,7 @@ static double linearise(void *problem, int n, const double *plan, double *gradie
     const driveline *law = problem;
     gauss_newton model = {0, n, 0.0, gradient, hessian};
     shot state;
-    depart(law, law->disturbance_n, gradient != 0, &state);
+    depart(law, law->disturbance_n, law->disturbance_mps2, gradient != 0, &state);
     clear(&model);
     for (int k = 0; k < n; k++) {
         const double held = sqrt(law->blocks[k]);
@@ -81,12 +84,13 @@ static double linearise(void *problem, int n, const double *plan, double *gradie
 static void shift(double *plan, int n) { memmove(plan, plan + 1, (size_t)(n - 1) * sizeof *plan); }
 
 int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm,
-                   double disturbance_n, double urgency) {
+                   double disturbance_n, double disturbance_mps2, double urgency) {
     sqp *solver = &law->solver;
     const int n = solver->qp.n;
     law->torque_ref_nm = torque_ref_nm;
     law->last_torque_nm = last_torque_nm;
     law->disturbance_n = disturbance_n;
+    law->disturbance_mps2 = disturbance_mps2;
     law->urgency = urgency;
     for (int k = 0; k < n; k++) solver->plan[k] = clamp(solver->plan[k], torque_ref_nm);
     const int status = sqp_minimise(solver, linearise, law, torque_ref_nm);

@@ -11,7 +11,7 @@ enum { DRIVELINE_NX = 7 };
 typedef struct {
     double x[DRIVELINE_NX]; /* the state that is rolled forward and planned from; SI units */
     double plan[BOX_QP_MAX];
-    double disturbance_n;   /* on the tyre force */
+    double disturbance_n, disturbance_mps2; /* on the tyre's force, on the body */
     double torque_ref_nm, last_torque_nm;
     double urgency;         /* factor on the residuals of slip and integral */
     double period_s;
@@ -30,10 +30,11 @@ void driveline_reset(driveline *law);
 
 /* Carry x through torques (count,), the first for a part of a period, the others for one each. */
 void driveline_roll_forward(driveline *law, const double *torques_nm, int count,
-                            double first_periods, double disturbance_n);
+                            double first_periods, double disturbance_n,
+                            double disturbance_mps2);
 
 /* Write the best torques from x on into `plan`; see `outcome`. */
 int driveline_plan(driveline *law, double last_torque_nm, double torque_ref_nm,
-                   double disturbance_n, double urgency);
+                   double disturbance_n, double disturbance_mps2, double urgency);
 
 #endif

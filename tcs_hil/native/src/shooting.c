@@ -9,7 +9,7 @@ void shot_start(shot *state, const dynamics *model, const double *parameters,
     state->constants = constants;
     state->derives = derives;
     state->columns = 0;
-    state->inputs[DISTURBANCE] = 0.0;
+    state->inputs[DISTURBANCE_N] = state->inputs[DISTURBANCE_MPS2] = 0.0;
     memcpy(state->x, x, (size_t)model->nx * sizeof *x);
 }
 

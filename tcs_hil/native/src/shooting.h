@@ -11,7 +11,7 @@ enum { SHOT_MAX = 7, COLUMNS_MAX = SHOT_MAX + BOX_QP_MAX };
 typedef double by_variables[COLUMNS_MAX]; /* the derivatives of one quantity */
 
 /* What a step is made with besides the state and the model's parameters. */
-enum input { STEP_S, TORQUE_NM, DISTURBANCE, INPUTS };
+enum input { STEP_S, TORQUE_NM, DISTURBANCE_N, DISTURBANCE_MPS2, INPUTS };
 
 /* State (nx,) after one Runge-Kutta step; all four models are written by
    scripts/generate_native.py. */

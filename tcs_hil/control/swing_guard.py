@@ -24,9 +24,10 @@ STAB_NMPS: Final = 1500.0
 """A driver who asks for more this fast, or for less, makes the wheel swing himself."""
 
 MEAN_SHARE: Final = 0.97
+SLIDING_CARRIED_SHARE: Final = 0.95
 LEAST_SHARE: Final = 0.6
-"""What is held: of the torque's mean, or all that the tyre carries if that is more; and what is
-left of it at least, whatever a sliding tyre carries."""
+"""What is held: of the torque's mean, or all that the tyre carries if that is more; of what a tyre
+carries that slides, because it is to come back; and what is left of the hold at least."""
 SLIDING_SHARE: Final = 2.0
 LOST_SHARE: Final = 4.0
 """Beyond so many slip references a held wheel slides, and is left to the law."""
@@ -135,7 +136,8 @@ class SwingGuard:
         """Settle gently: near standstill a step of torque makes the tyre swing by itself."""
         self._left_s -= self._period_s
         if wheel.slip_ratio > SLIDING_SHARE * self._slip_reference:
-            self._level_nm = max(self._carried.torque_nm, self._least_nm)
+            carried_nm = SLIDING_CARRIED_SHARE * self._carried.torque_nm
+            self._level_nm = max(carried_nm, self._least_nm)
         if wheel.slip_ratio > LOST_SHARE * self._slip_reference:
             self._left_s = 0.0
         self._ceiling_nm += self._settling * (self._level_nm - self._ceiling_nm)

@@ -144,12 +144,12 @@ def test_a_loop_that_swings_again_is_held_for_longer(guard: SwingGuard) -> None:
     assert hold_s(guard) == pytest.approx(first_s, abs=2 * PERIOD_S)
 
 
-def test_a_wheel_that_slides_in_the_hold_gets_what_its_tyre_carries(
+def test_a_wheel_that_slides_in_the_hold_gets_less_than_its_tyre_carries(
     guard: SwingGuard,
 ) -> None:
     held_after(guard, swing(30.0))
     slides = replace(wheel_at(3.0, 0.3, MEAN_NM), tyre_force_n=700.0)
-    assert after(guard, slides, HOLD_S - 0.05) == pytest.approx(700.0 * ARM_M, rel=0.02)
+    assert after(guard, slides, HOLD_S - 0.05) < 700.0 * ARM_M
     assert guard.holds
 
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from msgspec.structs import replace
 
 from tcs_hil.control.bank_core import FloatArray, bank_core
 from tcs_hil.control.force_disturbance import ForceDisturbance
@@ -13,9 +17,9 @@ from tcs_hil.control.settings import ControlSettings
 from tcs_hil.control.speed_disturbance import SpeedDisturbance
 from tcs_hil.model.bank import KoopmanBank
 
-FORCE_SHARE = 0.17
-FORCE_S = 0.02
-FORCE_MPS = (3.0, 5.5)
+FORCE_SHARE: Final = 0.17
+FORCE_S: Final = 0.02
+FORCE_MPS: Final = (3.0, 5.5)
 """So much of the force that the tyre lacks is foreseen to go on, low-passed over this time: nothing
 up to the first speed, where it would feed the tyre's ring, the whole share from the second."""
 
@@ -30,8 +34,9 @@ class BankOptimiser:
 
     def __init__(self, settings: ControlSettings, bank: KoopmanBank) -> None:
         self._core = bank_core(settings, bank)
-        vehicle = bank.provenance.settings.vehicle
-        self._disturbance = SpeedDisturbance(settings, vehicle)
+        road_ratio = float(np.mean(bank.provenance.settings.fleet.friction_ratio))
+        vehicle = replace(bank.provenance.settings.vehicle, friction_ratio=road_ratio)
+        self._speed = SpeedDisturbance(settings, vehicle)
         self._force = ForceDisturbance(settings, vehicle, FORCE_S)
         inertia_kgm2 = settings.default.driveline.wheel_inertia_kgm2
         self._radps_per_n = -settings.period_s * vehicle.wheel_radius_m / inertia_kgm2
@@ -43,16 +48,16 @@ class BankOptimiser:
         return self._core.x
 
     def reset(self) -> None:
-        """Forget the last plan, the last sample and the disturbance."""
+        """Forget the last plan, the last sample and what disturbs."""
         self._expected_radps = math.nan
         self._sent_nm = 0.0
-        self._disturbance.reset()
+        self._speed.reset()
         self._force.reset()
         self._core.reset()
 
     def observe(self, wheel: WheelState, integral_s: float) -> None:
         """The state is the one at the instant ``wheel`` describes; learns what disturbs it."""
-        self._disturbance.learn(wheel.wheel_speed_radps - self._expected_radps)
+        self._speed.learn(wheel.wheel_speed_radps - self._expected_radps)
         self._force.update(wheel)
         # Without a motor on the bus, what was sent to it is the best guess.
         unknown = math.isnan(wheel.motor_torque_nm)
@@ -71,7 +76,7 @@ class BankOptimiser:
         slow_mps, fast_mps = FORCE_MPS
         brisk = min(max((wheel.vehicle_speed_mps - slow_mps) / (fast_mps - slow_mps), 0.0), 1.0)
         lacking_radps = self._radps_per_n * self._force.value_n
-        return self._disturbance.value_radps + FORCE_SHARE * brisk * lacking_radps
+        return self._speed.value_radps + FORCE_SHARE * brisk * lacking_radps
 
     def roll_forward(self, torques_nm: Sequence[float], first_periods: float) -> None:
         """Carry the state through torques, the first for a part of a period, then one each."""

@@ -9,6 +9,7 @@ from tcs_hil.control.protocol import WheelState
 from tcs_hil.model.vehicle import Vehicle
 
 MEMORY_S: Final = 0.15
+"""Shorter than a road lasts, longer than a tyre rings: at walking pace that is no acceleration."""
 
 LIMIT_MPS2: Final = 5.0
 """A wheel on ice beside one on asphalt, downhill: no road and no car does more."""
@@ -30,7 +31,7 @@ class BodyDisturbance:
     def learn(self, wheel: WheelState) -> None:
         """Take one tick."""
         surplus_mps2 = wheel.vehicle_accel_mps2 - self._per_force * wheel.tyre_force_n
-        if math.isfinite(surplus_mps2):
+        if -math.inf < surplus_mps2 < math.inf:
             bounded_mps2 = min(max(surplus_mps2, -LIMIT_MPS2), LIMIT_MPS2)
             self.value_mps2 += self._gain * (bounded_mps2 - self.value_mps2)
 

@@ -15,10 +15,12 @@ class WheelState(msgspec.Struct, frozen=True):
     ``slip_speed_mps`` is s = omega R - v, ``slip_ratio`` the modified kappa of
     Eq. (slip_mod).  Motor quantities are on the motor side of the gear.
 
-    ``sent_nm`` is the torque that was granted to the motor at the end of the last tick.
+    ``vehicle_accel_mps2`` is the body's, over ground; ``sent_nm`` what the gate let
+    the motor have in the last tick.
+
     NaN is what nobody knows: ``motor_torque_nm`` without a motor on the bus;
-    ``shaft_twist_rad`` and ``tyre_force_n`` (driving positive) without an observer.
-    ``vehicle_accel_mps2`` is the body's over ground; without it, and without an observer, NaN.
+    ``shaft_twist_rad``, ``tyre_force_n`` (driving positive) and
+    ``vehicle_accel_mps2`` without an observer; ``sent_nm`` in the first tick.
     ``loop_delay_s`` is from the instant all this describes to the first effect
     of the command that answers it.
     """
@@ -65,6 +67,7 @@ class Proposal(msgspec.Struct, frozen=True):
     that cannot decide does not modify it.  ``next_nm`` is what a law that plans
     means to propose in the period after, NaN from others.  ``source`` is not
     ``LAW`` where the torque is a stand-in's; the status is then still the law's.
+    A PI that is part of a law (`guarded.py`) is that law.
     """
 
     torque_nm: float

@@ -1,4 +1,4 @@
-"""What ends a limit cycle while it begins: torque held at the swing's mean, then given back."""
+"""What ends a limit cycle while it begins: torque held where the swing was, then given back."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ STAB_NMPS: Final = 1500.0
 """A driver who asks for more this fast, or for less, makes the wheel swing himself."""
 
 MEAN_SHARE: Final = 0.97
+"""Held is this much of the torque's mean, or all that the tyre carries if that is more."""
 SLIDING_CARRIED_SHARE: Final = 0.95
 LEAST_SHARE: Final = 0.6
-"""What is held: of the torque's mean, or all that the tyre carries if that is more; of what a tyre
-carries that slides, because it is to come back; and what is left of the hold at least."""
+"""A wheel that slides in the hold is to come back: it gets so much of what its tyre carries, and
+at least so much of what was held before."""
 SLIDING_SHARE: Final = 2.0
 LOST_SHARE: Final = 4.0
 """Beyond so many slip references a held wheel slides, and is left to the law."""
@@ -46,7 +47,7 @@ class SwingGuard:
 
     Below what the tyre carries, wheel and driveline are stable by themselves:
     what they keep up, the loop feeds.  So after a few swings the torque is held,
-    a little below its own mean, until they have died away, and then bounded by a
+    at its mean or what the tyre carries, until they have died away, and then bounded by a
     ceiling that grows until it binds no more.  If the loop swings again, it is
     held for longer.  What a stab at the pedal sets swinging has ``stab_rings_s``
     to die away before anything is counted.

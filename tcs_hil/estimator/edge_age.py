@@ -6,7 +6,7 @@ import math
 from typing import Final
 
 OLDEST_S: Final = 0.05
-"""A speed that stands for longer is one of its own, not a mean of the past."""
+"""No speed is brought up to date by more: the acceleration now says little of so long ago."""
 
 
 class EdgeAge:

@@ -87,7 +87,8 @@ class FusedEstimator:
         accel_mps2, shown_radps = self._body.accel_mps2, self._wheel_speed_radps[index]
         age_s = self._ages[index].update(shown_radps)
         if m.motor_age_s > MOTOR_PATIENCE_S:
-            omega_radps = shown_radps + age_s * accel_mps2 / self._vehicle.wheel_radius_m
+            gained_radps = age_s * accel_mps2 / self._vehicle.wheel_radius_m
+            omega_radps = max(shown_radps + gained_radps, 0.0)
             return side.without_motor(omega_radps, body_mps, delay_s, self._sent_nm[index])
         motor_radps, motor_nm = m.motor_speed_radps[index], m.motor_torque_nm[index]
         motion = body_mps, accel_mps2

@@ -89,8 +89,8 @@ def _note_gaps(plan: Plan, findings: Findings) -> None:
     if not any(name in plan.inputs for name in MOTOR_INPUTS):
         findings.warn(
             "inputs",
-            "no motor speeds and torques: slip rests on the wheels' own sensors, which say little "
-            'at walking pace (of the laws, "pi" fares best there), and control.default.delay is '
+            "no motor speeds and torques: the PI stands in for the default laws, by the wheels' "
+            "own sensors, which say little at walking pace, and control.default.delay is "
             "believed, not measured",
         )
     if ACCEL_INPUT not in plan.inputs:

@@ -77,9 +77,27 @@ def test_straying_over_the_border_for_one_tick_hardly_matters() -> None:
 def test_a_failure_counts_while_the_failing_law_has_more_say() -> None:
     controller = guarded(Fixed(100.0, SolveStatus.FAILED))
     torques(controller, OUTSIDE, 1)
-    statuses = [controller.step(INSIDE, 200.0).status for _ in range(30)]
-    assert statuses[0] is SolveStatus.OK
-    assert statuses[-1] is SolveStatus.FAILED
+    proposals = [controller.step(INSIDE, 200.0) for _ in range(20)]
+    assert proposals[0].status is SolveStatus.OK
+    assert proposals[-1].status is SolveStatus.FAILED
+    assert max(proposal.torque_nm for proposal in proposals) < 201.0
+
+
+def test_a_law_that_fails_on_the_way_back_does_not_pull_towards_the_request() -> None:
+    law = Fixed(100.0)
+    controller = guarded(law)
+    torques(controller, INSIDE, 1)
+    torques(controller, OUTSIDE, 20)
+    law.torque_nm, law.status = 200.0, SolveStatus.FAILED
+    assert max(torques(controller, INSIDE, 20)) < 100.0
+
+
+def test_a_motor_that_is_lost_again_while_the_law_comes_back_makes_no_step() -> None:
+    controller = guarded()
+    torques(controller, INSIDE, 1)
+    torques(controller, BLIND, 100)
+    back_nm = torques(controller, INSIDE, 20)[-1]
+    assert torques(controller, BLIND, 1)[0] == pytest.approx(back_nm, abs=2.0)
 
 
 def test_the_pi_takes_on_nothing_from_a_law_that_has_not_decided() -> None:
@@ -91,10 +109,12 @@ def test_the_pi_takes_on_nothing_from_a_law_that_has_not_decided() -> None:
     assert torques(controller, OUTSIDE, 1)[0] < 101.0
 
 
-def test_a_reset_reaches_the_law_and_trusts_it_again() -> None:
+def test_a_reset_reaches_both_and_trusts_the_law_again() -> None:
     law = Fixed(100.0)
     controller = guarded(law)
     torques(controller, OUTSIDE, 40)
     controller.reset()
     assert law.resets == 1
+    assert torques(controller, wheel_at(11.0, 0.01, 100.0), 1) == [200.0]  # the PI sleeps
+    controller.reset()
     assert torques(controller, INSIDE, 1) == [100.0]

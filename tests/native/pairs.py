@@ -73,12 +73,14 @@ def random_questions(seed: int, count: int) -> Iterator[tuple[WheelState, float]
     """Wheels and requests from all over, one after the other without any sense."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
-        torque_nm = rng.choice((math.nan, rng.uniform(0.0, 250.0)))
+        torque_nm = rng.uniform(0.0, 250.0)  # without it the PI decides
         wheel = wheel_at(rng.uniform(0.0, 40.0), rng.uniform(-0.1, 0.9), torque_nm)
         seen = replace(
             wheel,
             shaft_twist_rad=rng.choice((math.nan, rng.uniform(-0.1, 0.1))),
             tyre_force_n=rng.choice((math.nan, rng.uniform(-500.0, 2000.0))),
+            vehicle_accel_mps2=rng.choice((math.nan, rng.uniform(-3.0, 6.0))),
+            sent_nm=rng.choice((math.nan, rng.uniform(0.0, 250.0))),
             loop_delay_s=rng.uniform(0.0, 0.02),
         )
         yield seen, rng.uniform(0.0, 250.0)

@@ -19,7 +19,8 @@ from tcs_hil.model.bank import KoopmanBank
 
 FORCE_SHARE: Final = 0.17
 FORCE_S: Final = 0.02
-FORCE_MPS: Final = (3.0, 5.5)
+FORCE_SLOW_MPS: Final = 3.0
+FORCE_FAST_MPS: Final = 5.5
 """So much of the force that the tyre lacks is foreseen to go on, low-passed over this time: nothing
 up to the first speed, where it would feed the tyre's ring, the whole share from the second."""
 
@@ -73,8 +74,8 @@ class BankOptimiser:
         little, because the change of the motor's speed in z tells that force for
         this period, and for no other.
         """
-        slow_mps, fast_mps = FORCE_MPS
-        brisk = min(max((wheel.vehicle_speed_mps - slow_mps) / (fast_mps - slow_mps), 0.0), 1.0)
+        way = (wheel.vehicle_speed_mps - FORCE_SLOW_MPS) / (FORCE_FAST_MPS - FORCE_SLOW_MPS)
+        brisk = min(max(way, 0.0), 1.0)
         lacking_radps = self._radps_per_n * self._force.value_n
         return self._speed.value_radps + FORCE_SHARE * brisk * lacking_radps
 

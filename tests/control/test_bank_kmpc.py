@@ -9,7 +9,7 @@ import pytest
 from msgspec.structs import replace
 from scipy.optimize import lsq_linear
 
-from tcs_hil.control.bank_kmpc import FORCE_MPS, BankOptimiser
+from tcs_hil.control.bank_kmpc import FORCE_FAST_MPS, FORCE_SLOW_MPS, BankOptimiser
 from tcs_hil.control.bank_law import bank_mpc
 from tcs_hil.control.bank_osqp import BandProblem
 from tcs_hil.control.bank_problem import CALM_MPS, INTEGRAL, bands_of, output_weights
@@ -100,9 +100,9 @@ def test_a_tyre_that_pushes_less_is_foreseen_to_go_on_so_above_walking_pace_alon
         optimiser.roll_forward([50.0] * 10, 1.0)
         return float(optimiser.state[Observable.WHEEL_SPEED])
 
-    slow_mps, fast_mps = FORCE_MPS
-    assert foreseen_radps(slow_mps, 500.0) == foreseen_radps(slow_mps, 0.0)
-    assert foreseen_radps(fast_mps, 500.0) > foreseen_radps(fast_mps, 0.0) + 0.1
+    slow, fast = FORCE_SLOW_MPS, FORCE_FAST_MPS
+    assert foreseen_radps(slow, 500.0) == foreseen_radps(slow, 0.0)
+    assert foreseen_radps(fast, 500.0) > foreseen_radps(fast, 0.0) + 0.1
 
 
 @pytest.mark.parametrize("border", [1.0978, 3.4435, 7.0])
